@@ -1,1 +1,21 @@
-//! Placeholder.
+//! Hair assets, strands, views, and the contract with a graphics API.
+//!
+//! This crate names no graphics API, makes no device, never submits and never waits. It knows strands, not how they move
+//! ([`tressfx-sim`](https://docs.rs/tressfx-sim)) or look ([`tressfx-render`](https://docs.rs/tressfx-render)).
+
+#![forbid(unsafe_code)]
+
+pub mod backend;
+pub mod check;
+pub mod error;
+pub mod hazards;
+pub mod id;
+pub mod null;
+pub mod pass;
+pub mod shader;
+pub mod strand_buffers;
+pub mod view;
+
+pub use error::{Error, Result};
+/// The shader compiler whose modules a [`shader::Shader`] holds.
+pub use naga;

@@ -1,0 +1,227 @@
+//! What must be waited for before each command of a list, on APIs that ask.
+//!
+//! For each resource the tracker keeps the last writer and the stages that have seen its write since. "Last use" alone is
+//! not enough: written in compute, read in compute, read in graphics needs two waits, since the graphics stages never saw
+//! the write.
+
+use std::collections::HashMap;
+use std::ops::BitOr;
+
+use crate::id::Resource;
+use crate::pass::{Command, Draw, PassList};
+use crate::shader::{Bindings, Shader, SlotKind};
+
+/// Kinds of access, as a set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Access(u8);
+
+impl Access {
+    /// No access.
+    pub const NONE: Self = Self(0);
+    /// Read by a compute pass.
+    pub const COMPUTE_READ: Self = Self(1);
+    /// Written by a compute pass.
+    pub const COMPUTE_WRITE: Self = Self(1 << 1);
+    /// Read by the shaders of a raster pass.
+    pub const RASTER_READ: Self = Self(1 << 2);
+    /// Written by the shaders of a raster pass.
+    pub const RASTER_WRITE: Self = Self(1 << 3);
+    /// Read by a copy.
+    pub const COPY_READ: Self = Self(1 << 4);
+    /// Written by a copy, an upload or a clear.
+    pub const COPY_WRITE: Self = Self(1 << 5);
+    /// Drawn to, as a colour or depth target.
+    pub const TARGET: Self = Self(1 << 6);
+
+    const WRITES: Self = Self(1 << 1 | 1 << 3 | 1 << 5 | 1 << 6);
+
+    /// Whether anything in the set writes.
+    pub fn writes(self) -> bool {
+        self.0 & Self::WRITES.0 != 0
+    }
+
+    /// Whether all of `other` is in the set.
+    pub fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// Whether the set is empty.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl BitOr for Access {
+    type Output = Self;
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// One resource to be waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wait {
+    /// The resource.
+    pub resource: Resource,
+    /// What was done to it before. Empty: its contents are not needed.
+    pub before: Access,
+    /// What the command does with it.
+    pub after: Access,
+}
+
+/// The state of one resource.
+#[derive(Clone, Copy, Debug, Default)]
+struct State {
+    /// The last write.
+    written: Access,
+    /// Reads since that write.
+    read: Access,
+    /// Accesses that need not wait for the write any more.
+    seen: Access,
+}
+
+/// Walks lists in the order in which they are recorded. It lives as long as a backend, so that it joins frames too.
+#[derive(Debug, Default)]
+pub struct Hazards {
+    states: HashMap<Resource, State>,
+}
+
+impl Hazards {
+    /// What must be waited for before `command`, one entry a resource; empty if nothing.
+    pub fn before(&mut self, command: &Command) -> Vec<Wait> {
+        let mut waits = Vec::new();
+        for (resource, access) in accesses(command) {
+            waits.extend(self.touch(resource, access));
+        }
+        waits
+    }
+
+    /// Forgets a destroyed resource.
+    pub fn forget(&mut self, resource: Resource) {
+        self.states.remove(&resource);
+    }
+
+    fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
+        let state = self.states.entry(resource).or_default();
+        // A texture changes its layout between drawing and sampling, which counts as a write.
+        if access.writes() {
+            let before = state.written | state.read;
+            *state = State { written: access, read: Access::NONE, seen: Access::NONE };
+            return (!before.is_empty()).then_some(Wait { resource, before, after: access });
+        }
+        let seen = state.written.is_empty() || state.seen.contains(access);
+        let before = state.written;
+        state.read = state.read | access;
+        state.seen = state.seen | access;
+        (!seen).then_some(Wait { resource, before, after: access })
+    }
+}
+
+/// What a command does with each resource that it names, each resource once.
+pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
+    let mut found = Vec::new();
+    match command {
+        Command::Upload { dst, .. } | Command::Clear { dst, .. } => found.push(((*dst).into(), Access::COPY_WRITE)),
+        Command::Copy { src, dst, .. } => {
+            found.push(((*src).into(), Access::COPY_READ));
+            found.push(((*dst).into(), Access::COPY_WRITE));
+        }
+        Command::ReadBuffer { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
+        Command::ReadTexture { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
+        Command::Compute(pass) => {
+            bound(&mut found, &pass.kernel.shader, &pass.bindings, [Access::COMPUTE_READ, Access::COMPUTE_WRITE]);
+        }
+        Command::Raster(pass) => {
+            for Draw { kernel, bindings, .. } in &pass.draws {
+                bound(&mut found, &kernel.shader, bindings, [Access::RASTER_READ, Access::RASTER_WRITE]);
+            }
+            let depth = pass.depth.iter().map(|(texture, _)| texture);
+            let targets = pass.colors.iter().map(|(texture, _)| texture).chain(depth);
+            found.extend(targets.map(|&texture| (texture.into(), Access::TARGET)));
+        }
+    }
+    merge(found)
+}
+
+fn bound(found: &mut Vec<(Resource, Access)>, shader: &Shader, bindings: &Bindings, [read, write]: [Access; 2]) {
+    for (slot, &resource) in shader.slots.iter().zip(bindings.resources()) {
+        let access = if slot.kind == SlotKind::ReadWrite { read | write } else { read };
+        found.push((resource, access));
+    }
+}
+
+fn merge(found: Vec<(Resource, Access)>) -> Vec<(Resource, Access)> {
+    let mut merged: Vec<(Resource, Access)> = Vec::with_capacity(found.len());
+    for (resource, access) in found {
+        match merged.iter_mut().find(|(other, _)| *other == resource) {
+            Some(entry) => entry.1 = entry.1 | access,
+            None => merged.push((resource, access)),
+        }
+    }
+    merged
+}
+
+/// The hazards of a whole list, one entry a command: for tests and for printing.
+pub fn of_list(list: &PassList) -> Vec<Vec<Wait>> {
+    let mut hazards = Hazards::default();
+    list.commands.iter().map(|command| hazards.before(command)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::id::Slots;
+
+    fn ids() -> [Resource; 2] {
+        let mut slots = Slots::default();
+        [slots.insert(()), slots.insert(())].map(|slot| Resource::Buffer(slot.into()))
+    }
+
+    fn wait(resource: Resource, before: Access, after: Access) -> Option<Wait> {
+        Some(Wait { resource, before, after })
+    }
+
+    #[test]
+    fn written_in_compute_read_in_compute_read_in_graphics_waits_twice() {
+        let [a, _] = ids();
+        let mut hazards = Hazards::default();
+        assert_eq!(hazards.touch(a, Access::COMPUTE_WRITE), None);
+        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
+        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), None, "seen already");
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), wait(a, Access::COMPUTE_WRITE, Access::RASTER_READ));
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
+    }
+
+    #[test]
+    fn a_write_waits_for_the_readers_and_the_last_writer() {
+        let [a, b] = ids();
+        let mut hazards = Hazards::default();
+        assert_eq!(hazards.touch(a, Access::COPY_WRITE), None);
+        hazards.touch(a, Access::COMPUTE_READ);
+        hazards.touch(a, Access::RASTER_READ);
+        let readers = Access::COPY_WRITE | Access::COMPUTE_READ | Access::RASTER_READ;
+        assert_eq!(hazards.touch(a, Access::COPY_WRITE), wait(a, readers, Access::COPY_WRITE));
+        assert_eq!(hazards.touch(a, Access::COPY_WRITE), wait(a, Access::COPY_WRITE, Access::COPY_WRITE));
+        assert_eq!(hazards.touch(b, Access::COMPUTE_READ), None, "other resources are not waited for");
+    }
+
+    #[test]
+    fn reads_alone_never_wait() {
+        let [a, _] = ids();
+        let mut hazards = Hazards::default();
+        for access in [Access::COMPUTE_READ, Access::RASTER_READ, Access::COPY_READ, Access::COMPUTE_READ] {
+            assert_eq!(hazards.touch(a, access), None);
+        }
+    }
+
+    #[test]
+    fn a_write_in_place_waits_for_its_own_predecessor() {
+        let [a, _] = ids();
+        let mut hazards = Hazards::default();
+        let update = Access::COMPUTE_READ | Access::COMPUTE_WRITE;
+        assert_eq!(hazards.touch(a, update), None);
+        assert_eq!(hazards.touch(a, update), wait(a, update, update));
+        hazards.forget(a);
+        assert_eq!(hazards.touch(a, update), None);
+    }
+}

@@ -1,0 +1,73 @@
+//! Shaders: WGSL composed, parsed and validated once, with their bindings reflected.
+//!
+//! A backend gets the naga module and emits what its API takes: wgpu takes it as it is, Vulkan writes SPIR-V from it.
+
+mod bindings;
+mod compose;
+mod layout;
+mod reflect;
+
+pub use bindings::Bindings;
+pub use compose::{Module, ShaderSource, Specialization, shared_modules};
+pub use layout::GpuStruct;
+pub use reflect::{ShaderSlot, SlotKind, Stages};
+
+use crate::error::{Error, Label, Result};
+
+/// A shader that is ready for any backend.
+#[derive(Debug)]
+pub struct Shader {
+    /// The kernel's label.
+    pub label: Label,
+    /// What it was specialised on, for people to read: features that are on, and constants.
+    pub features: String,
+    /// The composed WGSL.
+    pub wgsl: String,
+    /// The parsed module.
+    pub module: naga::Module,
+    /// What validation found out about it.
+    pub info: naga::valid::ModuleInfo,
+    /// Its bindings, all in `@group(0)`, by ascending number.
+    pub slots: Vec<ShaderSlot>,
+}
+
+impl Shader {
+    /// Composes `source`, parses, validates and reflects it.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] with the compiler's message.
+    pub fn new(source: &ShaderSource, specialization: &Specialization) -> Result<Self> {
+        let label = source.label;
+        let wgsl = compose::compose(source, specialization)?;
+        let module = naga::front::wgsl::parse_str(&wgsl)
+            .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
+        let info =
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
+                .validate(&module)
+                .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
+        let slots = reflect::slots(label, &module, &info)?;
+        Ok(Self { label, features: specialization.to_string(), wgsl, module, info, slots })
+    }
+
+    /// The entry point of a stage.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] if there is none, or more than one.
+    pub fn entry_point(&self, stage: naga::ShaderStage) -> Result<&naga::EntryPoint> {
+        let mut found = self.module.entry_points.iter().filter(|entry| entry.stage == stage);
+        match (found.next(), found.next()) {
+            (Some(entry), None) => Ok(entry),
+            (None, _) => Err(Error::Shader { label: self.label, message: format!("no {stage:?} entry point") }),
+            (Some(_), Some(_)) => {
+                Err(Error::Shader { label: self.label, message: format!("more than one {stage:?} entry point") })
+            }
+        }
+    }
+
+    /// Storage buffers that the shader binds in its busiest stage.
+    pub fn storage_buffers(&self) -> u32 {
+        let count =
+            |stage: Stages| self.slots.iter().filter(|slot| slot.is_storage() && slot.stages.has(stage)).count();
+        [Stages::COMPUTE, Stages::VERTEX, Stages::FRAGMENT].into_iter().map(count).max().unwrap_or(0) as u32
+    }
+}

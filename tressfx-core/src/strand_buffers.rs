@@ -1,0 +1,84 @@
+//! The part of a section that simulation and rendering share on the GPU.
+
+use crate::backend::{Backend, BufferDesc, BufferUse};
+use crate::error::Result;
+use crate::id::BufferId;
+
+/// How many strands of how many vertices a section has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StrandShape {
+    /// Strands that are simulated.
+    pub guides: u32,
+    /// Strands that follow each guide.
+    pub follows: u32,
+    /// Vertices of every strand, 2 to 256.
+    pub vertices: u32,
+}
+
+impl StrandShape {
+    /// Guides and follow strands.
+    pub fn strands(&self) -> u32 {
+        self.guides * (1 + self.follows)
+    }
+
+    /// Vertices of all guides.
+    pub fn guide_vertices(&self) -> u32 {
+        self.guides * self.vertices
+    }
+
+    /// Vertices of all strands.
+    pub fn strand_vertices(&self) -> u32 {
+        self.strands() * self.vertices
+    }
+
+    /// Segments of all strands.
+    pub fn segments(&self) -> u32 {
+        self.strands() * (self.vertices - 1)
+    }
+
+    /// The place of a vertex in a buffer that holds all strands: vertex-major, so that threads that walk neighbouring
+    /// strands read neighbouring addresses.
+    pub fn index(&self, strand: u32, vertex: u32) -> u32 {
+        vertex * self.strands() + strand
+    }
+
+    /// The strand that is follow strand `follow` of `guide`.
+    pub fn follow(&self, guide: u32, follow: u32) -> u32 {
+        self.guides * (1 + follow) + guide
+    }
+}
+
+/// What the simulation writes and the rendering reads; vertex-major, see [`StrandShape::index`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StrandBuffers {
+    /// The counts.
+    pub shape: StrandShape,
+    /// `vec4<f32>` a vertex of every strand: position in the unit of the file, inverse mass.
+    pub positions: BufferId,
+    /// `vec4<f32>` a vertex of every strand: unit tangent towards the tip, 0.
+    pub tangents: BufferId,
+    /// `f32` a vertex of every guide, `vertex * guides + guide`: width of the strand there, as a share of its full width.
+    pub thickness: BufferId,
+}
+
+impl StrandBuffers {
+    /// Makes the buffers, filled with zeros.
+    ///
+    /// # Errors
+    /// What the backend says when it cannot make a buffer of that size.
+    pub fn new(backend: &mut dyn Backend, shape: StrandShape) -> Result<Self> {
+        let mut create = |label, bytes_each: u64, count: u32| {
+            backend.create_buffer(&BufferDesc {
+                label,
+                bytes: (bytes_each * u64::from(count)).max(16),
+                usage: BufferUse::Storage,
+            })
+        };
+        Ok(Self {
+            shape,
+            positions: create("hair.positions", 16, shape.strand_vertices())?,
+            tangents: create("hair.tangents", 16, shape.strand_vertices())?,
+            thickness: create("hair.thickness", 4, shape.guide_vertices())?,
+        })
+    }
+}
