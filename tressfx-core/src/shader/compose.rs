@@ -172,7 +172,7 @@ mod tests {
     mod swapped {
         crate::gpu_struct! {
             /// Not as in the kernel above.
-            struct Params {
+            pub(super) struct Params {
                 /// Offset.
                 pub offset: f32,
                 /// Scale.
