@@ -3,8 +3,12 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{AssetFormat, HairAsset, MAX_VERTICES};
+use super::{AssetError, AssetFormat, HairAsset, MAX_VERTICES};
 use crate::strands::{Bounds, metres_per_unit};
+
+/// Segments up to this fraction of the median strand length count as having no length: in exported grooms, strands that
+/// were collapsed to a point keep the noise of the float coordinates.
+const NEGLIGIBLE: f64 = 1e-5;
 
 /// The facts about an asset, in the unit of the file, with the file's placement applied.
 #[derive(Clone, Debug, Serialize)]
@@ -57,9 +61,9 @@ pub struct LengthStats {
 /// What is unusual about an asset, though strands are made from it all the same. Each field counts occurrences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Oddities {
-    /// Two successive vertices at the same place.
+    /// Two successive vertices at the same place, up to 1e-5 of the median strand length.
     pub zero_length_segments: usize,
-    /// Strands whose vertices are all at the same place.
+    /// Strands all of whose segments have no length in this sense.
     pub zero_length_strands: usize,
     /// Strands of one vertex. They become strands of no length.
     pub single_vertex_strands: usize,
@@ -70,6 +74,20 @@ pub struct Oddities {
 }
 
 impl Oddities {
+    /// Segments of at most `negligible` count as having no length.
+    fn new(asset: &HairAsset, points: &[[f32; 3]], masses: &[f32], negligible: f64) -> Self {
+        let mut oddities = Self::default();
+        for range in asset.ranges() {
+            let short = segment_lengths(&points[range.clone()]).filter(|&length| length <= negligible).count();
+            oddities.zero_length_segments += short;
+            oddities.zero_length_strands += usize::from(short + 1 == range.len());
+            oddities.single_vertex_strands += usize::from(range.len() == 1);
+            oddities.long_strands += usize::from(range.len() > MAX_VERTICES as usize);
+            oddities.loose_roots += usize::from(masses[range.start] != 0.0);
+        }
+        oddities
+    }
+
     /// True where nothing is unusual.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
@@ -77,24 +95,16 @@ impl Oddities {
 }
 
 impl Report {
-    /// Looks through an asset, which must pass [`HairAsset::check`].
-    pub fn new(asset: &HairAsset) -> Self {
+    /// Looks through an asset.
+    ///
+    /// # Errors
+    /// Where the asset does not pass [`HairAsset::check`].
+    pub fn new(asset: &HairAsset) -> Result<Self, AssetError> {
+        asset.check()?;
         let points = asset.placed_points();
         let masses = asset.inverse_masses();
-        let mut lengths = Vec::with_capacity(asset.strand_count());
-        let mut oddities = Oddities::default();
-        for range in asset.ranges() {
-            let segments = || points[range.clone()].windows(2).map(|pair| segment_length(pair[0], pair[1]));
-            let length: f64 = segments().sum();
-            oddities.zero_length_segments += segments().filter(|&length| length == 0.0).count();
-            oddities.zero_length_strands += usize::from(length == 0.0);
-            oddities.single_vertex_strands += usize::from(range.len() == 1);
-            oddities.long_strands += usize::from(range.len() > MAX_VERTICES as usize);
-            oddities.loose_roots += usize::from(masses.get(range.start).is_some_and(|&mass| mass != 0.0));
-            lengths.push(length);
-        }
-        let length = LengthStats::new(&mut lengths);
-        Self {
+        let length = LengthStats::new(&mut strand_lengths(asset, &points));
+        Ok(Self {
             name: asset.name.clone(),
             format: asset.format,
             version: asset.version,
@@ -109,8 +119,8 @@ impl Report {
             follow_radius: asset.follow_radius,
             pinned_vertices: masses.iter().filter(|&&mass| mass == 0.0).count(),
             arrays: arrays(asset),
-            oddities,
-        }
+            oddities: Oddities::new(asset, &points, &masses, NEGLIGIBLE * length.median),
+        })
     }
 }
 
@@ -122,6 +132,14 @@ impl LengthStats {
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
         Self { min, mean, median: lengths[lengths.len() / 2], max }
     }
+}
+
+fn strand_lengths(asset: &HairAsset, points: &[[f32; 3]]) -> Vec<f64> {
+    asset.ranges().map(|range| segment_lengths(&points[range]).sum()).collect()
+}
+
+fn segment_lengths(strand: &[[f32; 3]]) -> impl Iterator<Item = f64> + '_ {
+    strand.windows(2).map(|pair| segment_length(pair[0], pair[1]))
 }
 
 /// The distance of two points, computed in f64.

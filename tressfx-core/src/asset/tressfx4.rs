@@ -96,7 +96,8 @@ fn positions(
 ///
 /// # Errors
 /// Where the asset does not pass [`HairAsset::check`], its strands differ in their vertex count, that count is not within
-/// 2 to 256, or the file would be larger than its 32-bit offsets allow.
+/// 2 to 256, its placement moves a point out
+/// of the range of f32, or the file would be larger than its 32-bit offsets allow.
 pub fn to_bytes(asset: &HairAsset) -> Result<Vec<u8>, AssetError> {
     asset.check()?;
     let vertices = uniform_count(asset)?;
@@ -108,8 +109,12 @@ pub fn to_bytes(asset: &HairAsset) -> Result<Vec<u8>, AssetError> {
     out[4..8].copy_from_slice(&strands.to_le_bytes());
     out[8..12].copy_from_slice(&vertices.to_le_bytes());
 
+    let points = asset.placed_points();
+    if let Some((_, kind)) = Owner::Vertex(&asset.counts).find_not_finite(points.as_flattened(), 3) {
+        return Err(AssetError::new(&asset.name, "placed points", kind));
+    }
     let positions: Vec<[f32; 4]> =
-        asset.placed_points().iter().zip(asset.inverse_masses().iter()).map(|(&[x, y, z], &w)| [x, y, z, w]).collect();
+        points.iter().zip(asset.inverse_masses().iter()).map(|(&[x, y, z], &w)| [x, y, z, w]).collect();
     append(&mut out, asset, &POSITION, Some(positions.as_flattened()))?;
     append(&mut out, asset, &STRAND_UV, flat(&asset.strand_uvs))?;
     append(&mut out, asset, &VERTEX_UV, flat(&asset.vertex_uvs))?;
