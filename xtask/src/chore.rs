@@ -8,6 +8,15 @@ use crate::driver;
 /// Built-in grooms that the demo renders, and where the picture goes.
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
+/// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
+const PICTURES: [(&str, &[&str]); 5] = [
+    ("long.png", &["builtin:long", "--motion", "turn", "--frames", "90"]),
+    ("straight.png", &["builtin:straight", "--frames", "60"]),
+    ("wavy.png", &["builtin:wavy", "--frames", "60"]),
+    ("curly.png", &["builtin:curly", "--frames", "60"]),
+    ("fur.png", &["builtin:fur", "--wind", "3,0,0", "--frames", "60"]),
+];
+
 /// Runs a command to its end.
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {
     let shown = format!("{command:?}").replace('"', "");
@@ -53,6 +62,20 @@ pub(crate) fn demo() -> Result<(), String> {
         run(Command::new(&tressfx).args(["render", groom, "--frames", "60", "--motion", "turn", "--out"]).arg(picture))?;
     }
     println!("The pictures are in {}", folder.display());
+    Ok(())
+}
+
+/// Makes the pictures of the documentation anew.
+pub(crate) fn docs() -> Result<(), String> {
+    let tressfx = tressfx("release")?;
+    driver::ensure(&tressfx)?;
+    let folder = root().join("docs").join("pictures");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for (picture, words) in PICTURES {
+        println!("tressfx render {} --size 960x540 --out docs/pictures/{picture}", words.join(" "));
+        let mut command = Command::new(&tressfx);
+        run(command.arg("render").args(words).args(["--size", "960x540", "--out"]).arg(folder.join(picture)))?;
+    }
     Ok(())
 }
 
