@@ -3,4 +3,7 @@
 #![forbid(unsafe_code)]
 
 pub mod asset;
+pub mod builtin;
+pub mod mesh;
+pub mod shape;
 pub mod strands;

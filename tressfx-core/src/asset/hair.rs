@@ -39,6 +39,10 @@ const COLOUR: u32 = 1 << 4;
 pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, AssetError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
+    if !data.starts_with(&MAGIC) {
+        let found = String::from_utf8_lossy(&data[..MAGIC.len()]).into_owned();
+        return Err(bytes.error("magic", 0, AssetErrorKind::Unexpected { found, expected: "HAIR" }));
+    }
     let bits = array_bits(bytes)?;
     let defaults = defaults(bytes)?;
     let mut at = HEADER;
