@@ -14,7 +14,7 @@ thread_local! {
 }
 
 /// The most bytes that the code holds at a time, beyond what was held before.
-pub fn peak_of(code: impl FnOnce()) -> usize {
+pub(crate) fn peak_of(code: impl FnOnce()) -> usize {
     let before = LIVE.get();
     PEAK.set(before);
     code();
