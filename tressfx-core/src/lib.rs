@@ -5,6 +5,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod asset;
 pub mod backend;
 pub mod check;
 pub mod error;
@@ -14,6 +15,7 @@ pub mod null;
 pub mod pass;
 pub mod shader;
 pub mod strand_buffers;
+pub mod strands;
 pub mod view;
 
 pub use error::{Error, Result};
