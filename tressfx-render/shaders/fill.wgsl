@@ -43,8 +43,9 @@ fn ribbon_of(strand: u32, vertex: u32) -> Ribbon {
     if !is_sound(positions[i].xyz) || !is_sound(positions[i + section.strands].xyz) {
         return Ribbon();
     }
-    let ribbon = project(&frame, end_at(strand, vertex), end_at(strand, vertex + 1u));
-    return clip(ribbon, vec2<f32>(frame.size), max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
+    let size = vec2<f32>(frame.size);
+    let ribbon = project(end_at(strand, vertex), end_at(strand, vertex + 1u), frame.near, frame.focal, 0.5 * size);
+    return clip(ribbon, size, max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
 }
 
 // Puts a fragment at the head of its pixel's list. One that has no room leaves the list as it is.
@@ -110,6 +111,10 @@ fn walk(ribbon: Ribbon, paint: Paint, first: u32, storing: bool) -> u32 {
 @compute @workgroup_size(GROUP)
 fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
         @builtin(local_invocation_index) lane: u32) {
+    if lane == 0u {
+        atomicStore(&requested, 0u);
+    }
+    workgroupBarrier();
     let i = thread_index(group, groups, lane);
     var ribbon: Ribbon;
     var paint: Paint;

@@ -90,6 +90,10 @@ fn resolve_list(head: u32) -> vec4<f32> {
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
            @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    if lane == 0u {
+        atomicStore(&hairy, 0u);
+    }
+    workgroupBarrier();
     let inside = all(pixel.xy < frame.size);
     let index = pixel.y * frame.size.x + pixel.x;
     var head = NOTHING;

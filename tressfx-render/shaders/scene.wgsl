@@ -37,7 +37,7 @@ fn scene(in: Varying) -> @location(0) vec4<f32> {
     let normal = select(-outside, outside, dot(outside, eye) >= -0.05);
     let rim = surface.look.x * pow(1.0 - saturate(dot(normal, eye)), 4.0);
     let wrap = surface.look.w;
-    var sum = surface.color.rgb * ambient(&frame, normal);
+    var sum = surface.color.rgb * ambient(frame.sky, frame.ground, normal);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = towards(frame.lights[i], in.point);
         let facing = dot(normal, light.xyz);

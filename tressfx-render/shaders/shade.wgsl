@@ -1,9 +1,9 @@
 // The colour of each strand vertex. Shading in the space of the strands costs what the strands cost, however many pixels
 // they cover and however often.
 
-import package::frame::{Frame, Light, towards, ambient};
+import package::frame::{Frame, ambient, towards};
 import package::grid::{GROUP, thread_index};
-import package::lighting::{form, scatter};
+import package::lighting::{Fibre, form, scatter};
 import package::section::{Section, strand_random};
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -23,14 +23,14 @@ fn outwards(point: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
     return across * inverseSqrt(max(dot(across, across), 1e-20));
 }
 
-fn lit(point: vec3<f32>, tangent: vec3<f32>, tilt: f32, albedo: vec3<f32>) -> vec3<f32> {
-    let normal = outwards(point, tangent);
+fn lit(point: vec3<f32>, fibre: Fibre) -> vec3<f32> {
+    let normal = outwards(point, fibre.tangent);
     let eye = normalize(frame.eye.xyz - point);
-    var sum = ambient(&frame, normal) * albedo;
+    var sum = ambient(frame.sky, frame.ground, normal) * fibre.albedo;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = towards(frame.lights[i], point);
-        let arriving = frame.lights[i].color.rgb * (light.w * form(&section, normal, light.xyz));
-        sum += arriving * scatter(&section, tangent, eye, light.xyz, tilt, albedo);
+        let arriving = frame.lights[i].color.rgb * (light.w * form(section.form, normal, light.xyz));
+        sum += arriving * scatter(fibre, eye, light.xyz);
     }
     return sum;
 }
@@ -51,6 +51,7 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let paint = mix(section.base, section.tip, along);
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
-    let color = clamp(open * lit(point, tangent, tilt, albedo), vec3(0.0), vec3(BRIGHTEST));
+    let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+    let color = clamp(open * lit(point, fibre), vec3(0.0), vec3(BRIGHTEST));
     colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
 }

@@ -39,6 +39,6 @@ fn towards(light: Light, point: vec3<f32>) -> vec4<f32> {
 }
 
 // Light from everywhere, on a surface that faces `normal`.
-fn ambient(frame: ptr<uniform, Frame>, normal: vec3<f32>) -> vec3<f32> {
-    return mix((*frame).ground.rgb, (*frame).sky.rgb, 0.5 + 0.5 * normal.y);
+fn ambient(sky: vec4<f32>, ground: vec4<f32>, normal: vec3<f32>) -> vec3<f32> {
+    return mix(ground.rgb, sky.rgb, 0.5 + 0.5 * normal.y);
 }

@@ -1,7 +1,16 @@
 // How a hair fibre scatters light: Kajiya and Kay's diffuse term and two highlights, shifted by the tilted scales of the
 // cuticle (after Marschner's R and TRT).
 
-import package::section::Section;
+struct Fibre {
+    tangent: vec3<f32>,
+    // Radians by which the scales tilt.
+    tilt: f32,
+    albedo: vec3<f32>,
+    diffuse: f32,
+    // Strength and exponent.
+    primary: vec2<f32>,
+    secondary: vec2<f32>,
+}
 
 fn perpendicular(cosine: f32) -> f32 {
     return sqrt(max(0.0, 1.0 - cosine * cosine));
@@ -18,18 +27,18 @@ fn lobe(cosine: f32, term: vec2<f32>) -> f32 {
     return term.x * pow(max(cosine, 1e-6), term.y);
 }
 
-// Radiance towards `eye` of a fibre of colour `albedo` in white light from `light`.
-fn scatter(section: ptr<uniform, Section>, tangent: vec3<f32>, eye: vec3<f32>, light: vec3<f32>, tilt: f32,
-           albedo: vec3<f32>) -> vec3<f32> {
-    let along_light = dot(tangent, light);
-    let along_eye = dot(tangent, eye);
-    let primary = lobe(highlight(along_light, along_eye, 2.0 * tilt), (*section).primary);
-    let secondary = lobe(highlight(along_light, along_eye, -3.0 * tilt), (*section).secondary);
-    return albedo * ((*section).diffuse * perpendicular(along_light) + secondary) + primary;
+// Radiance towards `eye` of a fibre in white light from `light`.
+fn scatter(fibre: Fibre, eye: vec3<f32>, light: vec3<f32>) -> vec3<f32> {
+    let along_light = dot(fibre.tangent, light);
+    let along_eye = dot(fibre.tangent, eye);
+    let primary = lobe(highlight(along_light, along_eye, 2.0 * fibre.tilt), fibre.primary);
+    let secondary = lobe(highlight(along_light, along_eye, -3.0 * fibre.tilt), fibre.secondary);
+    return fibre.albedo * (fibre.diffuse * perpendicular(along_light) + secondary) + primary;
 }
 
-// How much a fibre of a thick head of hair turns towards a light: it stands for the shadow that the hair casts on itself.
-fn form(section: ptr<uniform, Section>, normal: vec3<f32>, light: vec3<f32>) -> f32 {
+// How much light arrives where hair faces `normal`: `strength` says how much its far side darkens, in place of the shadow
+// that hair casts on itself.
+fn form(strength: f32, normal: vec3<f32>, light: vec3<f32>) -> f32 {
     let wrapped = saturate((dot(normal, light) + 0.4) / 1.4);
-    return mix(1.0, wrapped, (*section).form);
+    return mix(1.0, wrapped, strength);
 }

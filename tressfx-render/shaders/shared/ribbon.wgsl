@@ -1,7 +1,5 @@
 // A segment of a strand on the screen: a strip between two points with a width, a distance and a colour at either end.
 
-import package::frame::Frame;
-
 // In view space: position, x right, y up, -z ahead.
 struct End {
     point: vec3<f32>,
@@ -27,10 +25,9 @@ fn is_sound(point: vec3<f32>) -> bool {
     return all((bitcast<vec3<u32>>(point) & vec3(0x7fffffffu)) < vec3(LARGEST_BITS));
 }
 
-// Cuts off what is nearer than the near plane, and projects.
-fn project(frame: ptr<uniform, Frame>, a: End, b: End) -> Ribbon {
+// Cuts off what is nearer than the near plane, and projects: `focal` is in pixels, `center` is where the eye looks.
+fn project(a: End, b: End, near: f32, focal: f32, center: vec2<f32>) -> Ribbon {
     var ribbon: Ribbon;
-    let near = (*frame).near;
     let distances = vec2(-a.point.z, -b.point.z);
     if max(distances.x, distances.y) <= near {
         return ribbon;
@@ -38,8 +35,7 @@ fn project(frame: ptr<uniform, Frame>, a: End, b: End) -> Ribbon {
     let crossing = saturate((near - distances.x) / (distances.y - distances.x));
     let part = vec2(select(0.0, crossing, distances.x < near), select(1.0, crossing, distances.y < near));
     let nearness = 1.0 / max(mix(distances.xx, distances.yy, part), vec2(near));
-    let scale = (*frame).focal * nearness;
-    let center = 0.5 * vec2<f32>((*frame).size);
+    let scale = focal * nearness;
     ribbon.start = center + mix(a.point.xy, b.point.xy, part.x) * vec2(scale.x, -scale.x);
     ribbon.end = center + mix(a.point.xy, b.point.xy, part.y) * vec2(scale.y, -scale.y);
     ribbon.half_width = mix(vec2(a.radius), vec2(b.radius), part) * scale;
