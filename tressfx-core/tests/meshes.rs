@@ -1,5 +1,8 @@
 //! Meshes: read from files, and made.
 
+#[path = "support/assets.rs"]
+mod assets;
+
 use glam::Vec3;
 use tressfx_core::builtin::{Builtin, Style};
 use tressfx_core::mesh::{Mesh, MeshError};
@@ -71,11 +74,8 @@ fn capsules_of_an_ellipsoid_stay_inside_of_it() {
 
 #[test]
 fn real_meshes_are_read() {
-    let Some(folder) = std::env::var_os("TRESSFX_ASSETS") else {
-        eprintln!("skipped: TRESSFX_ASSETS is not set");
-        return;
-    };
-    let path = std::path::Path::new(&folder).join("sintel_lite/sintel.obj");
+    let Some(folder) = assets::folder() else { return };
+    let path = folder.join("sintel_lite/sintel.obj");
     let mesh = Mesh::read(path).expect("a bust");
     assert!(mesh.indices.len() >= 3 * 5952 && mesh.positions.len() >= 3046);
     assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-4));
