@@ -35,6 +35,7 @@ pub trait Backend {
     fn run(&mut self, list: &PassList) -> Result<()>;
 
     /// The bytes of a finished read-back, rows tightly packed. They are given once; `None` before they are there.
+    /// To be asked only after the list was submitted.
     fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>>;
 
     /// GPU time of each compute and raster pass of the newest finished list, in its order; empty where the device cannot

@@ -10,10 +10,10 @@ use crate::shader::{Shader, SlotKind};
 /// # Panics
 /// If a rule is broken, with the label or the place of the command: always a mistake of the program.
 pub fn check(list: &PassList) {
-    if cfg!(debug_assertions) {
-        if let Some(problem) = problem(list) {
-            panic!("{problem}");
-        }
+    if cfg!(debug_assertions)
+        && let Some(problem) = problem(list)
+    {
+        panic!("{problem}");
     }
 }
 

@@ -5,15 +5,20 @@
 
 #![forbid(unsafe_code)]
 
+pub mod asset;
 pub mod backend;
+pub mod builtin;
 pub mod check;
 pub mod error;
 pub mod hazards;
 pub mod id;
+pub mod mesh;
 pub mod null;
 pub mod pass;
 pub mod shader;
+pub mod shape;
 pub mod strand_buffers;
+pub mod strands;
 pub mod view;
 
 pub use error::{Error, Result};

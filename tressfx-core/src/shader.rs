@@ -41,10 +41,12 @@ impl Shader {
         let wgsl = compose::compose(source, specialization)?;
         let module = naga::front::wgsl::parse_str(&wgsl)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
-        let info =
-            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
-                .validate(&module)
-                .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
+        // naga counts pack2x16float, which is core WGSL, among what a device may lack.
+        let capabilities =
+            naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+            .validate(&module)
+            .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
         let slots = reflect::slots(label, &module, &info)?;
         Ok(Self { label, features: specialization.to_string(), wgsl, module, info, slots })
     }

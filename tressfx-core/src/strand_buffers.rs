@@ -3,6 +3,8 @@
 use crate::backend::{Backend, BufferDesc, BufferUse};
 use crate::error::Result;
 use crate::id::BufferId;
+use crate::pass::PassList;
+use crate::strands::Strands;
 
 /// How many strands of how many vertices a section has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +18,11 @@ pub struct StrandShape {
 }
 
 impl StrandShape {
+    /// The counts of a section.
+    pub fn of(strands: &Strands) -> Self {
+        Self { guides: strands.guides, follows: strands.follows, vertices: strands.vertices }
+    }
+
     /// Guides and follow strands.
     pub fn strands(&self) -> u32 {
         self.guides * (1 + self.follows)
@@ -80,5 +87,13 @@ impl StrandBuffers {
             tangents: create("hair.tangents", 16, shape.strand_vertices())?,
             thickness: create("hair.thickness", 4, shape.guide_vertices())?,
         })
+    }
+
+    /// Puts the rest pose into the buffers.
+    pub fn upload(&self, list: &mut PassList, strands: &Strands) {
+        let copies = 1 + strands.follows as usize;
+        list.upload(self.positions, 0, &strands.interleave(&strands.rest_of_all()));
+        list.upload(self.tangents, 0, &strands.interleave(&strands.tangents.repeat(copies)));
+        list.upload(self.thickness, 0, &strands.interleave(&strands.thickness));
     }
 }

@@ -1,0 +1,153 @@
+//! Whether the arrays of an asset fit each other: an asset made by hand gets the same care as one from a file.
+
+use super::{AssetError, AssetErrorKind, HairAsset};
+
+/// What the entries of an array belong to; finds the strand and the vertex to blame for an entry.
+#[derive(Clone, Copy)]
+pub(crate) enum Owner<'a> {
+    /// One entry per strand.
+    Strand,
+    /// One entry per vertex; the vertex counts of the strands.
+    Vertex(&'a [u32]),
+}
+
+impl Owner<'_> {
+    /// Looks for a value that is not finite among entries of `width` values each. Gives the index of the value as well.
+    pub(crate) fn find_not_finite(self, values: &[f32], width: usize) -> Option<(usize, AssetErrorKind)> {
+        let index = values.iter().position(|value| !value.is_finite())?;
+        let (strand, vertex) = self.locate(index / width);
+        Some((index, AssetErrorKind::NotFinite { strand, vertex, value: values[index] }))
+    }
+
+    fn locate(self, entry: usize) -> (usize, usize) {
+        let Self::Vertex(counts) = self else { return (entry, 0) };
+        let mut left = entry;
+        for (strand, &count) in counts.iter().enumerate() {
+            match left.checked_sub(count as usize) {
+                Some(rest) => left = rest,
+                None => return (strand, left),
+            }
+        }
+        (counts.len(), left)
+    }
+}
+
+impl HairAsset {
+    /// Checks that there is a strand, that no strand is empty, that every array has the length that its kind needs, and
+    /// that all values are finite and no inverse mass is negative.
+    ///
+    /// Every reader leaves an asset that passes; [`crate::strands::Strands::new`] and the writers check again, because the
+    /// fields are public.
+    ///
+    /// # Errors
+    /// The first array or value that does not fit.
+    pub fn check(&self) -> Result<(), AssetError> {
+        self.check_counts()?;
+        for (field, values, width, owner) in self.float_arrays() {
+            let Some(values) = values else { continue };
+            self.check_length(field, owner, values.len() / width)?;
+            if let Some((_, kind)) = owner.find_not_finite(values, width) {
+                return Err(self.error(field, kind));
+            }
+        }
+        if let Some(index) = &self.guide_index {
+            self.check_length("guide index", Owner::Strand, index.len())?;
+        }
+        let negative = self.inverse_mass.iter().flatten().find(|&&value| value < 0.0);
+        negative.map_or(Ok(()), |value| Err(self.error("inverse mass", out_of_range(value, "0 or more"))))
+    }
+
+    fn check_counts(&self) -> Result<(), AssetError> {
+        if self.counts.is_empty() {
+            return Err(self.error("strands", out_of_range("0", "at least 1")));
+        }
+        if let Some(strand) = self.counts.iter().position(|&count| count == 0) {
+            return Err(self.error(&format!("vertices of strand {strand}"), out_of_range("0", "at least 1")));
+        }
+        let stated: u64 = self.counts.iter().map(|&count| u64::from(count)).sum();
+        let found = self.points.len() as u64;
+        if stated == found {
+            return Ok(());
+        }
+        Err(self.error("vertices of all strands", AssetErrorKind::Mismatch { stated, found, of: "points are there" }))
+    }
+
+    /// All arrays of floats: name, values, values per entry, and what an entry belongs to.
+    fn float_arrays(&self) -> [(&'static str, Option<&[f32]>, usize, Owner<'_>); 9] {
+        let vertex = Owner::Vertex(&self.counts);
+        [
+            ("points", Some(self.points.as_flattened()), 3, vertex),
+            ("inverse mass", self.inverse_mass.as_deref(), 1, vertex),
+            ("strand UVs", flat(&self.strand_uvs), 2, Owner::Strand),
+            ("strand w", self.strand_w.as_deref(), 1, Owner::Strand),
+            ("strand thickness", self.strand_thickness.as_deref(), 1, Owner::Strand),
+            ("vertex UVs", flat(&self.vertex_uvs), 2, vertex),
+            ("vertex thickness", self.vertex_thickness.as_deref(), 1, vertex),
+            ("vertex transparency", self.vertex_transparency.as_deref(), 1, vertex),
+            ("vertex colours", flat(&self.vertex_colours), 4, vertex),
+        ]
+    }
+
+    fn check_length(&self, field: &str, owner: Owner<'_>, found: usize) -> Result<(), AssetError> {
+        let (needed, of) = match owner {
+            Owner::Strand => (self.counts.len(), "strands are there"),
+            Owner::Vertex(_) => (self.points.len(), "points are there"),
+        };
+        if needed == found {
+            return Ok(());
+        }
+        Err(self.error(field, AssetErrorKind::Mismatch { stated: found as u64, found: needed as u64, of }))
+    }
+
+    fn error(&self, field: &str, kind: AssetErrorKind) -> AssetError {
+        AssetError::new(&self.name, field, kind)
+    }
+}
+
+/// An optional array of entries as one of floats.
+pub(crate) fn flat<const N: usize>(array: &Option<Vec<[f32; N]>>) -> Option<&[f32]> {
+    array.as_ref().map(|array| array.as_flattened())
+}
+
+/// The error for a number that is outside of what is allowed.
+pub(crate) fn out_of_range(value: impl ToString, expected: &'static str) -> AssetErrorKind {
+    AssetErrorKind::OutOfRange { value: value.to_string(), expected }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::AssetFormat;
+
+    fn asset() -> HairAsset {
+        HairAsset::new("f", AssetFormat::Text, vec![[0.0; 3]; 5], vec![2, 3])
+    }
+
+    #[test]
+    fn each_array_must_fit() {
+        asset().check().expect("sound");
+        let broken: [(&str, HairAsset); 6] = [
+            ("strands", HairAsset { counts: vec![], ..asset() }),
+            ("vertices of strand 1", HairAsset { counts: vec![5, 0], ..asset() }),
+            ("vertices of all strands", HairAsset { counts: vec![2, 2], ..asset() }),
+            ("inverse mass", HairAsset { inverse_mass: Some(vec![1.0; 4]), ..asset() }),
+            ("strand UVs", HairAsset { strand_uvs: Some(vec![[0.0; 2]; 5]), ..asset() }),
+            ("guide index", HairAsset { guide_index: Some(vec![0]), ..asset() }),
+        ];
+        for (field, asset) in broken {
+            assert_eq!(asset.check().expect_err("broken").field, field);
+        }
+    }
+
+    #[test]
+    fn values_are_blamed_on_strand_and_vertex() {
+        let mut broken = asset();
+        broken.points[4][1] = f32::INFINITY;
+        assert_eq!(
+            broken.check().expect_err("inf").to_string(),
+            "f: points: strand 1, vertex 2: inf is not a finite number"
+        );
+        let broken = HairAsset { inverse_mass: Some(vec![0.0, 1.0, 1.0, 1.0, -1.0]), ..asset() };
+        assert!(broken.check().expect_err("negative").to_string().contains("is -1, but must be 0 or more"));
+    }
+}

@@ -1,0 +1,123 @@
+// The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest is summed up in integers.
+//
+// The order of a list changes from run to run with the order of the atomics; the result does not, to the bit: fragments
+// are sorted under a total order, and sums of integers know no order.
+
+import package::constants::K;
+import package::fragment::{Counters, NOTHING, OPAQUE, node_alpha, node_color};
+import package::frame::Frame;
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read> heads: array<u32>;
+@group(0) @binding(2) var<storage, read> nodes: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read_write> counters: Counters;
+// Premultiplied colour and alpha as four half floats, a pixel.
+@group(0) @binding(4) var<storage, read_write> resolved: array<vec2<u32>>;
+// Pixels with hair, a tile of 8 x 8.
+@group(0) @binding(5) var<storage, read_write> tiles: array<u32>;
+
+const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
+// Sums stop here instead of starting again from zero: no summand is larger.
+const FULL: u32 = 0x7fffffffu;
+const COLOR_UNIT: f32 = 16384.0;
+const OPTICAL_UNIT: f32 = 16384.0;
+
+// What lies behind the K nearest.
+struct Tail {
+    // Sum of -log2(1 - alpha).
+    optical: u32,
+    weight: u32,
+    color: vec3<u32>,
+}
+
+var<workgroup> hairy: atomic<u32>;
+
+fn is_before(a: vec3<u32>, b: vec3<u32>) -> bool {
+    return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
+}
+
+fn add(tail: ptr<function, Tail>, node: vec3<u32>) {
+    let alpha = f32(node_alpha(node)) / OPAQUE;
+    let optical = u32(round(-log2(max(1.0 - alpha, 1.0 / 65536.0)) * OPTICAL_UNIT));
+    let color = vec3<u32>(round(min(node_color(node) * alpha, vec3(256.0)) * COLOR_UNIT));
+    (*tail).optical = min((*tail).optical + optical, FULL);
+    (*tail).weight = min((*tail).weight + node_alpha(node), FULL);
+    (*tail).color = min((*tail).color + color, vec3(FULL));
+}
+
+fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
+    var color = vec3(0.0);
+    var transmittance = 1.0;
+    for (var i = 0u; i < K; i++) {
+        let alpha = f32(node_alpha((*nearest)[i])) / OPAQUE;
+        color += transmittance * alpha * node_color((*nearest)[i]);
+        transmittance *= 1.0 - alpha;
+    }
+    if tail.weight > 0u {
+        let average = vec3<f32>(tail.color) * (OPAQUE / COLOR_UNIT) / f32(tail.weight);
+        let behind = transmittance * exp2(-f32(tail.optical) / OPTICAL_UNIT);
+        color += (transmittance - behind) * average;
+        transmittance = behind;
+    }
+    return vec4(color, 1.0 - transmittance);
+}
+
+fn resolve_list(head: u32) -> vec4<f32> {
+    var nearest: array<vec3<u32>, K>;
+    for (var i = 0u; i < K; i++) {
+        nearest[i] = FAR;
+    }
+    var tail: Tail;
+    var next = head;
+    while next != NOTHING {
+        let node = nodes[next - 1u];
+        next = node.w;
+        var passed = node.xyz;
+        if is_before(passed, nearest[K - 1u]) {
+            // The last one falls out, and those behind the new one move up.
+            for (var i = 0u; i < K; i++) {
+                let held = nearest[i];
+                let first = is_before(passed, held);
+                nearest[i] = select(held, passed, first);
+                passed = select(passed, held, first);
+            }
+        }
+        add(&tail, passed);
+    }
+    return over(&nearest, tail);
+}
+
+@compute @workgroup_size(8, 8)
+fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
+           @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    if lane == 0u {
+        atomicStore(&hairy, 0u);
+    }
+    workgroupBarrier();
+    let inside = all(pixel.xy < frame.size);
+    let index = pixel.y * frame.size.x + pixel.x;
+    var head = NOTHING;
+    if inside {
+        head = heads[index];
+    }
+    if head != NOTHING {
+        atomicAdd(&hairy, 1u);
+    }
+    workgroupBarrier();
+    let count = atomicLoad(&hairy);
+    if lane == 0u {
+        tiles[group.y * groups.x + group.x] = count;
+        atomicAdd(&counters.pixels_with_hair, count);
+    }
+    if lane == 0u && all(group.xy == vec2(0u)) {
+        let wanted = atomicLoad(&counters.fragments);
+        counters.dropped = max(wanted, frame.node_capacity) - frame.node_capacity;
+    }
+    if inside && count > 0u {
+        var color = vec4(0.0);
+        if head != NOTHING {
+            color = resolve_list(head);
+        }
+        resolved[index] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+    }
+}

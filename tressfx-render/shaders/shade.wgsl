@@ -1,0 +1,57 @@
+// The colour of each strand vertex. Shading in the space of the strands costs what the strands cost, however many pixels
+// they cover and however often.
+
+import package::frame::{Frame, ambient, towards};
+import package::grid::{GROUP, thread_index};
+import package::lighting::{Fibre, form, scatter};
+import package::section::{Section, strand_random};
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> section: Section;
+@group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> tangents: array<vec4<f32>>;
+// Colour and opacity as four half floats.
+@group(0) @binding(4) var<storage, read_write> colors: array<vec2<u32>>;
+
+// Half floats end at 65504.
+const BRIGHTEST: f32 = 60000.0;
+
+// Away from the middle of the roots and across the strand: the side of the hair that the fibre lies on.
+fn outwards(point: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
+    let out = point - (section.pose * vec4(section.center.xyz, 1.0)).xyz;
+    let across = out - tangent * dot(out, tangent);
+    return across * inverseSqrt(max(dot(across, across), 1e-20));
+}
+
+fn lit(point: vec3<f32>, fibre: Fibre) -> vec3<f32> {
+    let normal = outwards(point, fibre.tangent);
+    let eye = normalize(frame.eye.xyz - point);
+    var sum = ambient(frame.sky, frame.ground, normal) * fibre.albedo;
+    for (var i = 0u; i < frame.light_count; i++) {
+        let light = towards(frame.lights[i], point);
+        let arriving = frame.lights[i].color.rgb * (light.w * form(section.form, normal, light.xyz));
+        sum += arriving * scatter(fibre, eye, light.xyz);
+    }
+    return sum;
+}
+
+@compute @workgroup_size(GROUP)
+fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+         @builtin(local_invocation_index) lane: u32) {
+    let i = thread_index(group, groups, lane);
+    if i >= section.strands * section.vertices {
+        return;
+    }
+    let strand = i % section.strands;
+    let guide = strand % section.guides;
+    let along = f32(i / section.strands) / f32(section.vertices - 1u);
+    let point = (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
+    let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
+    let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
+    let paint = mix(section.base, section.tip, along);
+    let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
+    let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
+    let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+    let color = clamp(open * lit(point, fibre), vec3(0.0), vec3(BRIGHTEST));
+    colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
+}

@@ -1,0 +1,135 @@
+//! What a section of hair is made of.
+
+use std::ops::RangeInclusive;
+
+use serde::{Deserialize, Serialize};
+
+/// A highlight of a fibre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Highlight {
+    /// How bright it is, 0 to 4.
+    pub strength: f32,
+    /// How narrow it is: the exponent of a cosine, 1 to 1000.
+    pub exponent: f32,
+}
+
+/// How the hair of a section looks. Lengths are in metres, colours linear RGB.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Material {
+    /// Radius of a fibre. Human hair has 0.00002 to 0.00006; more where one strand stands for many.
+    pub fibre_radius: f32,
+    /// Width at the tip as a share of the width at the root.
+    pub tip_width: f32,
+    /// Opacity of a fibre at the root.
+    pub opacity: f32,
+    /// Opacity of a fibre at the tip.
+    pub tip_opacity: f32,
+    /// Colour at the root.
+    pub base_color: [f32; 3],
+    /// Colour at the tip; in between it changes evenly.
+    pub tip_color: [f32; 3],
+    /// How much the brightness differs from strand to strand.
+    pub variation: f32,
+    /// Share of light that is scattered in all directions around the fibre (Kajiya and Kay).
+    pub diffuse: f32,
+    /// Light that the surface mirrors, white, shifted towards the root (Marschner's R).
+    pub primary: Highlight,
+    /// Light that went through the fibre and back, coloured, shifted towards the tip (Marschner's TRT).
+    pub secondary: Highlight,
+    /// Tilt of the cuticle's scales in degrees: what shifts the highlights.
+    pub tilt: f32,
+    /// How much the tilt differs from strand to strand: it breaks the highlights up.
+    pub tilt_variation: f32,
+    /// How much the side of the groom that is turned away from a light darkens, in place of the shadow that hair casts on
+    /// itself: 0 lights every strand as if it were alone.
+    pub form: f32,
+    /// How much darker hair is at its root, where little light gets to.
+    pub root_shade: f32,
+    /// Share of a strand's length, from the root, over which that darkness fades.
+    pub root_extent: f32,
+}
+
+impl Default for Material {
+    /// Chestnut brown.
+    fn default() -> Self {
+        Self {
+            fibre_radius: 0.000_09,
+            tip_width: 0.15,
+            opacity: 0.9,
+            tip_opacity: 0.8,
+            base_color: [0.19, 0.085, 0.04],
+            tip_color: [0.34, 0.17, 0.085],
+            variation: 0.3,
+            diffuse: 0.55,
+            primary: Highlight { strength: 0.10, exponent: 70.0 },
+            secondary: Highlight { strength: 1.0, exponent: 14.0 },
+            tilt: 5.0,
+            tilt_variation: 0.5,
+            form: 0.85,
+            root_shade: 0.6,
+            root_extent: 0.35,
+        }
+    }
+}
+
+/// A parameter that is out of its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("material: {parameter} is {value}, it must be from {} to {}", range.start(), range.end())]
+pub struct MaterialError {
+    /// Its name, as in a file.
+    pub parameter: &'static str,
+    /// Its value.
+    pub value: f32,
+    /// Where it may be.
+    pub range: RangeInclusive<f32>,
+}
+
+impl Material {
+    /// Checks that every parameter is in its range.
+    ///
+    /// # Errors
+    /// The first that is not, or is NaN.
+    pub fn validate(&self) -> Result<(), MaterialError> {
+        let color = |color: [f32; 3]| color.into_iter().fold(0.0, |worst: f32, c| if c < 0.0 { c } else { worst.max(c) });
+        let checks = [
+            ("fibre_radius", self.fibre_radius, 1e-6..=0.01),
+            ("tip_width", self.tip_width, 0.0..=1.0),
+            ("opacity", self.opacity, 0.0..=1.0),
+            ("tip_opacity", self.tip_opacity, 0.0..=1.0),
+            ("base_color", color(self.base_color), 0.0..=1.0),
+            ("tip_color", color(self.tip_color), 0.0..=1.0),
+            ("variation", self.variation, 0.0..=1.0),
+            ("diffuse", self.diffuse, 0.0..=4.0),
+            ("primary.strength", self.primary.strength, 0.0..=4.0),
+            ("primary.exponent", self.primary.exponent, 1.0..=1000.0),
+            ("secondary.strength", self.secondary.strength, 0.0..=4.0),
+            ("secondary.exponent", self.secondary.exponent, 1.0..=1000.0),
+            ("tilt", self.tilt, -30.0..=30.0),
+            ("tilt_variation", self.tilt_variation, 0.0..=1.0),
+            ("form", self.form, 0.0..=1.0),
+            ("root_shade", self.root_shade, 0.0..=1.0),
+            ("root_extent", self.root_extent, 0.001..=1.0),
+        ];
+        match checks.into_iter().find(|(_, value, range)| !range.contains(value)) {
+            Some((parameter, value, range)) => Err(MaterialError { parameter, value, range }),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_in_range_and_what_is_not_is_named() {
+        Material::default().validate().unwrap();
+        let error = Material { opacity: 1.5, ..Material::default() }.validate().unwrap_err();
+        assert_eq!(error.to_string(), "material: opacity is 1.5, it must be from 0 to 1");
+        let error = Material { base_color: [0.1, -0.2, 0.3], ..Material::default() }.validate().unwrap_err();
+        assert_eq!((error.parameter, error.value), ("base_color", -0.2));
+        assert!(Material { tilt: f32::NAN, ..Material::default() }.validate().is_err());
+    }
+}

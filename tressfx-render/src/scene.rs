@@ -1,0 +1,240 @@
+//! `hair.render.scene`: opaque meshes and the backdrop.
+
+use glam::Vec3;
+use tressfx_core::backend::{Backend, Blend, BufferDesc, BufferUse, Depth, DepthOrder, Format, Kernel};
+use tressfx_core::error::Result;
+use tressfx_core::gpu_struct;
+use tressfx_core::id::BufferId;
+use tressfx_core::mesh::Mesh;
+use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
+use tressfx_core::view::{Pose, View};
+
+use crate::lights::Lights;
+use crate::renderer::Targets;
+use crate::{gpu, shaders};
+
+const LABEL: &str = "hair.render.scene";
+
+/// How a mesh looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Linear RGB.
+    pub color: Vec3,
+    /// Brightness of the edge against the light, 0 to 1.
+    pub rim: f32,
+    /// Brightness of the highlight, 0 to 1.
+    pub gloss: f32,
+    /// How narrow the highlight is, 1 to 1000.
+    pub exponent: f32,
+    /// How far light creeps into the shadow, 0 to 1: more for skin.
+    pub softness: f32,
+}
+
+impl Default for Surface {
+    /// Skin, powdered.
+    fn default() -> Self {
+        Self { color: Vec3::new(0.62, 0.42, 0.32), rim: 0.12, gloss: 0.05, exponent: 18.0, softness: 0.35 }
+    }
+}
+
+/// What is behind everything: linear RGB, from the middle of the picture to its edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backdrop {
+    /// In the middle.
+    pub middle: Vec3,
+    /// At the edge.
+    pub edge: Vec3,
+}
+
+impl Default for Backdrop {
+    /// Grey-blue paper.
+    fn default() -> Self {
+        Self { middle: Vec3::new(0.34, 0.38, 0.43), edge: Vec3::new(0.085, 0.1, 0.125) }
+    }
+}
+
+mod uniform {
+    use super::gpu_struct;
+
+    gpu_struct! {
+        /// A mesh in a frame.
+        pub(super) struct Surface {
+            /// Where it is moved to, columns.
+            pub pose: [[f32; 4]; 4],
+            /// Its colour.
+            pub color: [f32; 4],
+            /// Rim, gloss, exponent, softness.
+            pub look: [f32; 4],
+        }
+    }
+
+    gpu_struct! {
+        /// What is behind everything.
+        pub(super) struct Backdrop {
+            /// Colour in the middle.
+            pub middle: [f32; 4],
+            /// Colour at the edge.
+            pub edge: [f32; 4],
+            /// Pixels across and down.
+            pub size: [f32; 2],
+            /// The depth that nothing is behind.
+            pub far: f32,
+            /// Nothing.
+            pub unused: f32,
+        }
+    }
+}
+
+/// A mesh on the GPU.
+#[derive(Debug)]
+pub struct SceneMesh {
+    vertices: BufferId,
+    indices: BufferId,
+    uniform: BufferId,
+    index_count: u32,
+}
+
+/// A mesh in a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshDraw<'a> {
+    /// The mesh.
+    pub mesh: &'a SceneMesh,
+    /// Its look.
+    pub surface: Surface,
+    /// Where it is moved to.
+    pub pose: Pose,
+}
+
+/// Draws what is not hair, so that hair has something to grow on and to hide behind.
+#[derive(Debug)]
+pub struct ScenePass {
+    order: DepthOrder,
+    mesh: Kernel,
+    backdrop: Kernel,
+    frame: BufferId,
+    gradient: BufferId,
+}
+
+impl ScenePass {
+    /// Compiles the shaders for a colour target and an order of depth.
+    ///
+    /// # Errors
+    /// What the backend says.
+    pub fn new(backend: &mut dyn Backend, target: Format, order: DepthOrder) -> Result<Self> {
+        let (target, depth) = ((target, Blend::Replace), Depth::TestWrite(order));
+        let mesh = ("scene", include_str!("../shaders/scene.wgsl"));
+        let backdrop = ("backdrop", include_str!("../shaders/backdrop.wgsl"));
+        Ok(Self {
+            order,
+            mesh: shaders::raster(backend, LABEL, mesh, target, depth)?,
+            backdrop: shaders::raster(backend, "hair.render.backdrop", backdrop, target, depth)?,
+            frame: uniform_buffer::<gpu::Frame>(backend, "hair.render.scene.frame")?,
+            gradient: uniform_buffer::<uniform::Backdrop>(backend, "hair.render.backdrop")?,
+        })
+    }
+
+    /// Clears the targets and draws meshes before the backdrop.
+    ///
+    /// # Panics
+    /// If the view has another order of depth than the pass.
+    pub fn draw(
+        &self,
+        list: &mut PassList,
+        view: &View,
+        lights: &Lights,
+        targets: &Targets,
+        backdrop: &Backdrop,
+        meshes: &[MeshDraw],
+    ) {
+        assert_eq!(view.depth, self.order, "the order of depth of the view and of the scene pass");
+        list.upload(self.frame, 0, &[gpu::Frame::new(view, lights, 0)]);
+        list.upload(self.gradient, 0, &[backdrop.uniform(view)]);
+        for draw in meshes {
+            list.upload(draw.mesh.uniform, 0, &[draw.uniform()]);
+        }
+        let behind = Draw {
+            kernel: self.backdrop.clone(),
+            bindings: self.backdrop.bind(&[("gradient", self.gradient.into())]),
+            vertices: 3,
+            instances: 1,
+        };
+        list.raster(RasterPass {
+            label: LABEL,
+            colors: vec![(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))],
+            depth: Some((targets.depth, Load::Clear(self.order.far()))),
+            draws: meshes.iter().map(|draw| self.mesh(draw.mesh)).chain([behind]).collect(),
+        });
+    }
+
+    fn mesh(&self, mesh: &SceneMesh) -> Draw {
+        let bindings = self.mesh.bind(&[
+            ("frame", self.frame.into()),
+            ("surface", mesh.uniform.into()),
+            ("vertices", mesh.vertices.into()),
+            ("indices", mesh.indices.into()),
+        ]);
+        Draw { kernel: self.mesh.clone(), bindings, vertices: mesh.index_count, instances: 1 }
+    }
+
+    /// Frees what it made.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.mesh, self.backdrop].into_iter().for_each(|kernel| backend.destroy_pipeline(kernel.pipeline));
+        [self.frame, self.gradient].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}
+
+impl SceneMesh {
+    /// Uploads a mesh with the next run of `list`.
+    ///
+    /// # Errors
+    /// What the backend says when it cannot make a buffer of that size.
+    pub fn new(backend: &mut dyn Backend, list: &mut PassList, mesh: &Mesh) -> Result<Self> {
+        let pairs = mesh.positions.iter().zip(&mesh.normals);
+        let vertices: Vec<[f32; 4]> =
+            pairs.flat_map(|(p, n)| [p.extend(1.0).to_array(), n.extend(0.0).to_array()]).collect();
+        let mut buffer = |label, bytes: usize| {
+            backend.create_buffer(&BufferDesc { label, bytes: bytes.max(32) as u64, usage: BufferUse::Storage })
+        };
+        let made = Self {
+            vertices: buffer("hair.render.scene.vertices", size_of_val(&vertices[..]))?,
+            indices: buffer("hair.render.scene.indices", size_of_val(&mesh.indices[..]))?,
+            uniform: uniform_buffer::<uniform::Surface>(backend, "hair.render.scene.surface")?,
+            index_count: mesh.indices.len() as u32,
+        };
+        list.upload(made.vertices, 0, &vertices);
+        list.upload(made.indices, 0, &mesh.indices);
+        Ok(made)
+    }
+
+    /// Frees it.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.vertices, self.indices, self.uniform].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}
+
+impl MeshDraw<'_> {
+    fn uniform(&self) -> uniform::Surface {
+        let Surface { color, rim, gloss, exponent, softness } = self.surface;
+        uniform::Surface {
+            pose: self.pose.matrix().to_cols_array_2d(),
+            color: color.extend(1.0).to_array(),
+            look: [rim, gloss, exponent, softness],
+        }
+    }
+}
+
+impl Backdrop {
+    fn uniform(&self, view: &View) -> uniform::Backdrop {
+        uniform::Backdrop {
+            middle: self.middle.extend(1.0).to_array(),
+            edge: self.edge.extend(1.0).to_array(),
+            size: view.size.map(|side| side as f32),
+            far: view.depth.far(),
+            unused: 0.0,
+        }
+    }
+}
+
+fn uniform_buffer<T>(backend: &mut dyn Backend, label: &'static str) -> Result<BufferId> {
+    backend.create_buffer(&BufferDesc { label, bytes: size_of::<T>() as u64, usage: BufferUse::Uniform })
+}
