@@ -37,7 +37,7 @@ fn step(strands: &Strands) -> Step {
     };
     let before = Motion::wild(strands).head(0.2);
     let sub_step = SubStep {
-        length: 1.0 / 240.0,
+        length: 1.0 / 120.0,
         length_ratio: 1.0,
         time: 0.7,
         head: motion.after(&before),
@@ -136,7 +136,7 @@ fn check_frame_end(name: &str, rig: &mut Rig, step: &Step) {
         let expected = reference::tangents(points);
         for (vertex, (tangent, expected)) in tangents.iter().zip(expected).enumerate() {
             let error = tangent.truncate().as_dvec3().distance(expected);
-            assert!(error < 1e-5, "{name} hair.sim.tangents: strand {strand} vertex {vertex}: {error:e}");
+            assert!(error < 1e-4, "{name} hair.sim.tangents: strand {strand} vertex {vertex}: {error:e}");
             assert_eq!(tangent.w, 0.0);
         }
     }

@@ -14,7 +14,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
     let mut moved = false;
     let mut old_parent = guide.positions[0];
     for i in 1..guide.vertices() {
-        let heading = rotate_back(step.head_rotation, guide.positions[i] - old_parent);
+        let heading = rotate_back(step.head_rotation.as_dvec4(), guide.positions[i] - old_parent);
         old_parent = guide.positions[i];
         if guide.is_pinned(i) {
             moved = false;
@@ -31,7 +31,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
             let displacement = point - step.in_head(step.carry(guide.previous[i]));
             let kept = slid(displacement, normal, depth, f64::from(step.friction));
             let past = step.in_world(point - kept) - step.motion_translation.as_dvec3();
-            guide.previous[i] = rotate_back(step.motion_rotation, past);
+            guide.previous[i] = rotate_back(step.motion_rotation.as_dvec4(), past);
             guide.positions[i] = step.in_world(point);
             moved = true;
         }
@@ -40,13 +40,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
 
 /// Where a vertex is when it has left all capsules, and the last surface's normal; `None` if it was outside. `heading` is
 /// the way that its edge had.
-fn resolved(
-    capsules: &[Capsule],
-    parent: DVec3,
-    start: DVec3,
-    length: f64,
-    heading: DVec3,
-) -> Option<(DVec3, DVec3)> {
+fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, heading: DVec3) -> Option<(DVec3, DVec3)> {
     let mut point = start;
     let mut normal = None;
     for _ in 0..ROUNDS {
