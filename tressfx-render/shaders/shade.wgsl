@@ -16,16 +16,24 @@ import package::section::{Section, strand_random};
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
 
-// Away from the middle of the roots and across the strand: the side of the hair that the fibre lies on.
-fn outwards(point: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
-    let out = point - (section.pose * vec4(section.center.xyz, 1.0)).xyz;
-    let across = out - tangent * dot(out, tangent);
-    return across * inverseSqrt(max(dot(across, across), 1e-20));
+fn posed(i: u32) -> vec3<f32> {
+    return (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
 }
 
-fn lit(point: vec3<f32>, fibre: Fibre) -> vec3<f32> {
-    let normal = outwards(point, fibre.tangent);
-    let eye = normalize(frame.eye.xyz - point);
+fn unit(v: vec3<f32>) -> vec3<f32> {
+    return v * inverseSqrt(max(dot(v, v), 1e-20));
+}
+
+// The side of the hair that the fibre lies on: away from the middle of the roots, the way that the strand grows out of the
+// skin, and across the strand.
+fn outwards(point: vec3<f32>, tangent: vec3<f32>, strand: u32) -> vec3<f32> {
+    let growth = posed(strand + section.strands) - posed(strand);
+    let out = unit(point - (section.pose * vec4(section.center.xyz, 1.0)).xyz) + unit(growth);
+    return unit(out - tangent * dot(out, tangent));
+}
+
+fn lit(point: vec3<f32>, normal: vec3<f32>, fibre: Fibre) -> vec3<f32> {
+    let eye = unit(frame.eye.xyz - point);
     var sum = ambient(frame.sky, frame.ground, normal) * fibre.albedo;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = towards(frame.lights[i], point);
@@ -45,13 +53,13 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let strand = i % section.strands;
     let guide = strand % section.guides;
     let along = f32(i / section.strands) / f32(section.vertices - 1u);
-    let point = (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
+    let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
     let paint = mix(section.base, section.tip, along);
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    let color = clamp(open * lit(point, fibre), vec3(0.0), vec3(BRIGHTEST));
+    let color = clamp(open * lit(point, outwards(point, tangent, strand), fibre), vec3(0.0), vec3(BRIGHTEST));
     colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
 }

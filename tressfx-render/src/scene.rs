@@ -31,9 +31,9 @@ pub struct Surface {
 }
 
 impl Default for Surface {
-    /// Skin, powdered.
+    /// A tailor's dummy of dark clay: where hair is thin, it is seen between the strands, and no strand shades it.
     fn default() -> Self {
-        Self { color: Vec3::new(0.62, 0.42, 0.32), rim: 0.12, gloss: 0.05, exponent: 18.0, softness: 0.35 }
+        Self { color: Vec3::new(0.075, 0.062, 0.057), rim: 0.05, gloss: 0.06, exponent: 22.0, softness: 0.3 }
     }
 }
 
@@ -49,7 +49,7 @@ pub struct Backdrop {
 impl Default for Backdrop {
     /// Grey-blue paper.
     fn default() -> Self {
-        Self { middle: Vec3::new(0.34, 0.38, 0.43), edge: Vec3::new(0.085, 0.1, 0.125) }
+        Self { middle: Vec3::new(0.30, 0.33, 0.36), edge: Vec3::new(0.05, 0.057, 0.07) }
     }
 }
 
