@@ -236,6 +236,11 @@ impl Stage {
         self.over(list, grooms)
     }
 
+    /// Bytes that the backend holds.
+    pub fn backend_memory(&self) -> u64 {
+        self.backend.memory().bytes
+    }
+
     /// The depth of the last scene.
     pub fn depth(&mut self) -> Vec<f32> {
         let mut list = PassList::new();

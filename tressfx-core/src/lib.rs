@@ -7,6 +7,9 @@
 
 pub mod asset;
 pub mod backend;
+pub mod builtin;
+pub mod mesh;
+pub mod shape;
 pub mod check;
 pub mod error;
 pub mod hazards;

@@ -4,6 +4,7 @@
 import package::frame::{Frame, ambient, towards};
 import package::grid::{GROUP, thread_index};
 import package::lighting::{Fibre, form, scatter};
+import package::ribbon::is_sound;
 import package::section::{Section, strand_random};
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -60,6 +61,9 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    let color = clamp(open * lit(point, outwards(point, tangent, strand), fibre), vec3(0.0), vec3(BRIGHTEST));
+    var color = clamp(open * lit(point, outwards(point, tangent, strand), fibre), vec3(0.0), vec3(BRIGHTEST));
+    if !is_sound(color) {
+        color = vec3(0.0);
+    }
     colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
 }

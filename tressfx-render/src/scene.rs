@@ -238,3 +238,18 @@ impl Backdrop {
 fn uniform_buffer<T>(backend: &mut dyn Backend, label: &'static str) -> Result<BufferId> {
     backend.create_buffer(&BufferDesc { label, bytes: size_of::<T>() as u64, usage: BufferUse::Uniform })
 }
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::null::NullBackend;
+
+    use super::*;
+
+    #[test]
+    fn structs_are_laid_out_as_in_the_wgsl() {
+        let pass = ScenePass::new(&mut NullBackend::default(), Format::Rgba16F, DepthOrder::Reverse).unwrap();
+        pass.mesh.shader.check_layout::<gpu::Frame>().unwrap();
+        pass.mesh.shader.check_layout::<uniform::Surface>().unwrap();
+        pass.backdrop.shader.check_layout::<uniform::Backdrop>().unwrap();
+    }
+}
