@@ -92,7 +92,8 @@ impl Material {
     /// # Errors
     /// The first that is not, or is NaN.
     pub fn validate(&self) -> Result<(), MaterialError> {
-        let color = |color: [f32; 3]| color.into_iter().fold(0.0, |worst: f32, c| if c < 0.0 { c } else { worst.max(c) });
+        let color =
+            |color: [f32; 3]| color.into_iter().fold(0.0, |worst: f32, c| if c < 0.0 { c } else { worst.max(c) });
         let checks = [
             ("fibre_radius", self.fibre_radius, 1e-6..=0.01),
             ("tip_width", self.tip_width, 0.0..=1.0),
