@@ -261,9 +261,9 @@ fn detect(bytes: &[u8]) -> Option<AssetFormat> {
     let version = f32::from_le_bytes(magic);
     if magic == hair::MAGIC {
         Some(AssetFormat::Hair)
-    } else if (3.0..4.0).contains(&version) {
+    } else if tressfx3::VERSIONS.contains(&version) {
         Some(AssetFormat::TressFx3)
-    } else if (4.0..5.0).contains(&version) {
+    } else if tressfx4::VERSIONS.contains(&version) {
         Some(AssetFormat::TressFx4)
     } else {
         let word = lines::first_word(bytes)?;

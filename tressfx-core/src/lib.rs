@@ -8,15 +8,15 @@
 pub mod asset;
 pub mod backend;
 pub mod builtin;
-pub mod mesh;
-pub mod shape;
 pub mod check;
 pub mod error;
 pub mod hazards;
 pub mod id;
+pub mod mesh;
 pub mod null;
 pub mod pass;
 pub mod shader;
+pub mod shape;
 pub mod strand_buffers;
 pub mod strands;
 pub mod view;

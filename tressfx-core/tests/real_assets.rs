@@ -1,8 +1,10 @@
 //! Real grooms against counts that an independent parser found. They are no part of the repository: the folder that holds
 //! them is named by the environment variable TRESSFX_ASSETS, and a test that does not have it says so.
 
-use std::path::PathBuf;
+#[path = "support/assets.rs"]
+mod assets;
 
+use assets::folder;
 use tressfx_core::asset::{self, AssetFormat, HairAsset, Report, text, tressfx4};
 use tressfx_core::strands::{StrandOptions, Strands};
 
@@ -70,14 +72,6 @@ const KNOWN: [Known; 6] = [
         metres_per_unit: 0.01,
     },
 ];
-
-fn folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: TRESSFX_ASSETS is not set");
-    }
-    folder
-}
 
 /// The asset and its bytes.
 fn load(folder: &std::path::Path, path: &str) -> (HairAsset, Vec<u8>) {

@@ -1,1 +1,29 @@
-//! Placeholder.
+//! The simulation of hair: kernels, their order, and their f64 references.
+//!
+//! The method is that of TressFX 4.1 with its defects mended: Verlet integration, global and local shape constraints,
+//! velocity shock propagation, length constraints, wind, capsules. [`HairSim`] makes its buffers and pipelines once and then
+//! only writes passes into a [`PassList`](tressfx_core::pass::PassList); it never names a backend, submits or waits.
+//!
+//! Every kernel `x` is one file `shaders/x.wgsl`, one function `kernel::x`, one f64 function [`reference`]`::x` and one label
+//! `hair.sim.x`.
+
+#![forbid(unsafe_code)]
+
+mod buffers;
+mod clock;
+mod error;
+mod kernel;
+pub mod metrics;
+mod params;
+pub mod reference;
+mod section;
+mod sim;
+pub mod step;
+mod wind;
+
+pub use clock::{Clock, ClockParams, Frame, StepInput, SubStep};
+pub use error::SimError;
+pub use params::{ParamError, SimParams};
+pub use section::Stage;
+pub use sim::{HairSim, SectionDesc, StepReport};
+pub use wind::Wind;

@@ -1,2 +1,30 @@
-//! Placeholder.
-fn main() {}
+//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`.
+
+mod chore;
+mod driver;
+
+use std::process::ExitCode;
+
+const USAGE: &str = "usage: cargo xtask demo | test
+
+  demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
+         the built-in grooms into out/demo, and says where the pictures are
+  test   formatting, clippy, all tests, and the documentation, each without a warning
+  docs   makes the pictures of README.md and docs/ anew";
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["demo"] => chore::demo(),
+        ["test"] => chore::test(),
+        ["docs"] => chore::docs(),
+        _ => Err(String::from(USAGE)),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,4 +1,7 @@
 //! What must hold for every asset that a reader accepts, whatever the bytes were.
+//!
+//! There is a target for each reader. In this folder, with a nightly compiler (or RUSTC_BOOTSTRAP=1) and cargo-fuzz:
+//! `cargo run --example seeds`, then `cargo fuzz run text -s none -- -max_total_time=600 -max_len=4096`.
 
 use tressfx_core::asset::{AssetError, HairAsset, Report, read_bytes, text, tressfx4};
 use tressfx_core::strands::{StrandOptions, Strands};

@@ -113,3 +113,41 @@ pub(crate) fn flat<const N: usize>(array: &Option<Vec<[f32; N]>>) -> Option<&[f3
 pub(crate) fn out_of_range(value: impl ToString, expected: &'static str) -> AssetErrorKind {
     AssetErrorKind::OutOfRange { value: value.to_string(), expected }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::AssetFormat;
+
+    fn asset() -> HairAsset {
+        HairAsset::new("f", AssetFormat::Text, vec![[0.0; 3]; 5], vec![2, 3])
+    }
+
+    #[test]
+    fn each_array_must_fit() {
+        asset().check().expect("sound");
+        let broken: [(&str, HairAsset); 6] = [
+            ("strands", HairAsset { counts: vec![], ..asset() }),
+            ("vertices of strand 1", HairAsset { counts: vec![5, 0], ..asset() }),
+            ("vertices of all strands", HairAsset { counts: vec![2, 2], ..asset() }),
+            ("inverse mass", HairAsset { inverse_mass: Some(vec![1.0; 4]), ..asset() }),
+            ("strand UVs", HairAsset { strand_uvs: Some(vec![[0.0; 2]; 5]), ..asset() }),
+            ("guide index", HairAsset { guide_index: Some(vec![0]), ..asset() }),
+        ];
+        for (field, asset) in broken {
+            assert_eq!(asset.check().expect_err("broken").field, field);
+        }
+    }
+
+    #[test]
+    fn values_are_blamed_on_strand_and_vertex() {
+        let mut broken = asset();
+        broken.points[4][1] = f32::INFINITY;
+        assert_eq!(
+            broken.check().expect_err("inf").to_string(),
+            "f: points: strand 1, vertex 2: inf is not a finite number"
+        );
+        let broken = HairAsset { inverse_mass: Some(vec![0.0, 1.0, 1.0, 1.0, -1.0]), ..asset() };
+        assert!(broken.check().expect_err("negative").to_string().contains("is -1, but must be 0 or more"));
+    }
+}

@@ -39,6 +39,10 @@ const COLOUR: u32 = 1 << 4;
 pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, AssetError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
+    if !data.starts_with(&MAGIC) {
+        let found = String::from_utf8_lossy(&data[..MAGIC.len()]).into_owned();
+        return Err(bytes.error("magic", 0, AssetErrorKind::Unexpected { found, expected: "HAIR" }));
+    }
     let bits = array_bits(bytes)?;
     let defaults = defaults(bytes)?;
     let mut at = HEADER;
@@ -121,5 +125,43 @@ impl Arrays<'_> {
         let array = self.bytes.floats(field, self.at, points, Owner::Vertex(self.counts))?;
         self.at += points * 4 * N;
         Ok(Some(array))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two strands of one and two segments, with points alone.
+    fn file() -> Vec<u8> {
+        let mut file = MAGIC.to_vec();
+        [2u32, 5, SEGMENTS | POINTS, 0].iter().for_each(|word| file.extend(word.to_le_bytes()));
+        file.resize(HEADER, 0);
+        [1u16, 2].iter().for_each(|segments| file.extend(segments.to_le_bytes()));
+        (0..15).for_each(|i| file.extend((i as f32).to_le_bytes()));
+        file
+    }
+
+    #[test]
+    fn strands_have_a_point_more_than_segments() {
+        let asset = read("f", &file()).expect("sound");
+        assert_eq!(asset.counts, [2, 3]);
+        assert_eq!(asset.points[4], [12.0, 13.0, 14.0]);
+        assert!(asset.vertex_thickness.is_none() && asset.vertex_colours.is_none());
+    }
+
+    #[test]
+    fn contradictions_are_named() {
+        let with = |at: usize, word: u32| {
+            let mut file = file();
+            file[at..at + 4].copy_from_slice(&word.to_le_bytes());
+            read("f", &file).expect_err("not sound").to_string()
+        };
+        assert_eq!(with(8, 4), "f: points (byte 8): is 4, but 5 points make up the strands");
+        assert!(with(4, 6).contains("strands (byte 4): is 6"));
+        assert!(with(12, SEGMENTS).contains("arrays (byte 12): is 0x1"));
+        assert!(with(12, 1 << 5 | POINTS).contains("arrays (byte 12)"));
+        assert!(with(0, 0).contains("magic (byte 0)"));
+        assert!(with(20, f32::NAN.to_bits()).contains("default thickness (byte 20)"));
     }
 }

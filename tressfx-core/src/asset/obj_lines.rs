@@ -180,3 +180,46 @@ impl Chains {
         Some(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The x coordinates of each strand, for vertices on the x axis.
+    fn strands(elements: &str) -> Result<Vec<Vec<f32>>, String> {
+        let vertices: String = (1..=6).map(|x| format!("v {x} 0 0\n")).collect();
+        let asset = read("f", (vertices + elements).as_bytes()).map_err(|error| error.to_string())?;
+        Ok(asset.ranges().map(|range| asset.points[range].iter().map(|point| point[0]).collect()).collect())
+    }
+
+    #[test]
+    fn elements_are_chained_in_any_order() {
+        assert_eq!(strands("l 1 2\nl 2 3\nl 4 5\n"), Ok(vec![vec![1.0, 2.0, 3.0], vec![4.0, 5.0]]));
+        assert_eq!(strands("l 2 3\nl 3 4\nl 1 2\n"), Ok(vec![vec![1.0, 2.0, 3.0, 4.0]]));
+        assert_eq!(strands("l 1 2 3\n"), Ok(vec![vec![1.0, 2.0, 3.0]]));
+    }
+
+    #[test]
+    fn the_root_is_where_the_elements_lead_away_from() {
+        assert_eq!(strands("l 3 2\nl 2 1\n"), Ok(vec![vec![3.0, 2.0, 1.0]]));
+        assert_eq!(strands("l 3/1 2/1 -6/1\n"), Ok(vec![vec![3.0, 2.0, 1.0]]));
+        assert_eq!(strands("l 5 4\nl 5 6\n"), Ok(vec![vec![4.0, 5.0, 6.0]]));
+    }
+
+    #[test]
+    fn what_is_no_strand_is_refused_with_its_line() {
+        for (elements, message) in [
+            ("l 1 2\nl 1 3\nl 1 4\n", "l (line 9, byte 64): the strand branches"),
+            ("l 1 2\nl 2 3\nl 3 1\n", "closed"),
+            ("l 1 1\n", "its own vertex"),
+            ("l 1\n", "at least two"),
+            ("l 1 7\n", "is 7, but must be the number of a vertex"),
+            ("l 1 0\n", "is 0, but must be"),
+            ("l 1 x\n", "found \"x\""),
+            ("", "no line element"),
+        ] {
+            let error = strands(elements).expect_err("no strands");
+            assert!(error.contains(message), "{error}");
+        }
+    }
+}

@@ -266,3 +266,50 @@ fn write_strands(out: &mut String, asset: &HairAsset) -> std::fmt::Result {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TWO: &str = "numStrands 2 is_sorted 1\nstrand 0 numVerts 2 texcoord 0.5 0.25 0.125\n0 0 0\n0 1 -0.0\n\
+                       strand 1 numVerts 1 texcoord 1 0 0\n1e-3, 2,3\n";
+
+    fn error(text: &str) -> String {
+        read("f", text.as_bytes()).expect_err("not sound").to_string()
+    }
+
+    #[test]
+    fn spellings_of_the_header_and_line_ends_make_no_difference() {
+        let expected = read("f", TWO.as_bytes()).expect("sound");
+        assert_eq!((expected.counts.as_slice(), expected.sorted), ([2, 1].as_slice(), Some(true)));
+        assert_eq!(expected.strand_w, Some(vec![0.125, 0.0]));
+        for other in [TWO.replace(" is_sorted", "\nis sorted"), TWO.replace('\n', "\r\n"), TWO.replace('\n', "\n\n")] {
+            assert_eq!(read("f", other.as_bytes()).expect("sound"), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_to_the_bit() {
+        let asset = read("f", TWO.as_bytes()).expect("sound");
+        let again = read("f", &to_bytes(&asset).expect("sound")).expect("just written");
+        assert_eq!(again, asset);
+        assert_eq!(again.points[1][2].to_bits(), (-0.0f32).to_bits());
+    }
+
+    #[test]
+    fn errors_name_line_byte_and_field() {
+        assert_eq!(
+            error(&TWO.replace("0 1 -0.0", "0 one -0.0")),
+            "f: vertex (line 4, byte 77): expected a number, found \"one\""
+        );
+        assert_eq!(
+            error(&TWO.replace("numStrands 2", "numStrands 3")),
+            "f: numStrands (line 1, byte 11): is 3, but 2 strands are in the file"
+        );
+        assert!(error(&TWO.replace("numVerts 1", "numVerts 0")).contains("is 0, but must be at least 1"));
+        assert!(error(&TWO.replace("numVerts 1", "numVerts 2")).contains("strand 1, vertex 1"));
+        assert!(error(&TWO.replace(" texcoord 1 0 0", "")).contains("texcoord"));
+        assert!(error("numStrands 1\nfrizz 4\n").contains("found \"frizz\""));
+        assert!(error("scale 2\n").contains("numStrands"));
+    }
+}

@@ -19,10 +19,14 @@
 //! All little-endian; an offset of 0 means that the array is absent. The reserved words and bytes that no array covers are
 //! ignored.
 
+use std::ops::Range;
+
 use super::bytes::{Array, Bytes, scalars};
 use super::check::{Owner, out_of_range};
 use super::{AssetError, AssetFormat, HairAsset, tressfx4};
 
+/// The versions that have this header.
+pub(super) const VERSIONS: Range<f32> = 3.0..4.0;
 const HEADER: usize = 296;
 
 const VERTICES: Array = Array { field: "verticesOffset", at: 144, header: HEADER };
@@ -40,6 +44,9 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, AssetError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
     let version = bytes.f32("version", 0)?;
+    if !VERSIONS.contains(&version) {
+        return Err(bytes.error("version", 0, out_of_range(version, "from 3 to below 4")));
+    }
     let Some(offset) = VERTICES.offset(bytes)? else {
         return Err(bytes.error(VERTICES.field, VERTICES.at, out_of_range(0, "the offset of the vertices")));
     };

@@ -15,10 +15,14 @@
 //! All little-endian; an offset of 0 means that the array is absent. The reserved words and bytes that no array covers are
 //! ignored.
 
+use std::ops::Range;
+
 use super::bytes::{Array, Bytes, scalars};
 use super::check::{Owner, flat, out_of_range};
 use super::{AssetError, AssetErrorKind, AssetFormat, HairAsset, MAX_VERTICES, MIN_VERTICES};
 
+/// The versions that have this header.
+pub(super) const VERSIONS: Range<f32> = 4.0..5.0;
 const HEADER: usize = 160;
 const VERSION: f32 = 4.0;
 
@@ -36,6 +40,9 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, AssetError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
     let version = bytes.f32("version", 0)?;
+    if !VERSIONS.contains(&version) {
+        return Err(bytes.error("version", 0, out_of_range(version, "from 4 to below 5")));
+    }
     let Some(offset) = POSITION.offset(bytes)? else {
         return Err(bytes.error(POSITION.field, POSITION.at, out_of_range(0, "the offset of the positions")));
     };

@@ -69,3 +69,33 @@ impl HairAsset {
         .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::asset::AssetFormat;
+
+    #[test]
+    fn extensions_stand_for_formats() {
+        assert_eq!(WriteFormat::of_path("a/b.TFX"), Some(WriteFormat::TressFx4));
+        assert_eq!(WriteFormat::of_path("b.txt"), Some(WriteFormat::Text));
+        assert_eq!(WriteFormat::of_path("b"), None);
+    }
+
+    #[test]
+    fn what_a_format_cannot_hold_is_said() {
+        let asset = HairAsset {
+            sorted: Some(true),
+            inverse_mass: Some(vec![0.0; 3]),
+            ..HairAsset::new("f", AssetFormat::Text, vec![[0.0; 3]; 3], vec![1, 2])
+        };
+        assert_eq!(asset.dropped_by(WriteFormat::TressFx4), ["sorted flag"]);
+        assert_eq!(asset.dropped_by(WriteFormat::Text), ["inverse mass"]);
+        let error = tressfx4::to_bytes(&asset).expect_err("ragged").to_string();
+        assert_eq!(
+            error,
+            "f: vertsPerStrand: strands have 1 to 2 vertices, but the format has one count for all: resample them first"
+        );
+        assert!(write("no.format", &asset, None).expect_err("no format").to_string().contains("extension"));
+    }
+}

@@ -34,3 +34,18 @@ impl Bounds {
         (self.max * 0.5 - self.min * 0.5).length()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_hold_their_points() {
+        let bounds = Bounds::of([Vec3::new(1.0, 0.0, -2.0), Vec3::new(-1.0, 4.0, 0.0)]);
+        assert_eq!((bounds.center(), bounds.radius()), (Vec3::new(0.0, 2.0, -1.0), 6.0f32.sqrt()));
+        assert_eq!(Bounds::of([]), Bounds::default());
+        let far = Bounds::of([Vec3::MAX, Vec3::MIN]);
+        assert_eq!(far.union(bounds), far);
+        assert_eq!(far.center(), Vec3::ZERO);
+    }
+}

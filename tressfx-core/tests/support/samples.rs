@@ -1,7 +1,7 @@
 //! Small valid files of every format: the property tests mutate them, and the fuzz targets start from them.
 
 /// A format's name and its samples.
-pub fn all() -> Vec<(&'static str, Vec<Vec<u8>>)> {
+pub(crate) fn all() -> Vec<(&'static str, Vec<Vec<u8>>)> {
     vec![
         ("text", texts()),
         ("tressfx3", vec![tressfx3(2, 3), tressfx3(1, 2)]),
@@ -12,7 +12,7 @@ pub fn all() -> Vec<(&'static str, Vec<Vec<u8>>)> {
 }
 
 /// Text of 2013, with and without the third texture coordinate; 2.0 with commas and CRLF.
-pub fn texts() -> Vec<Vec<u8>> {
+fn texts() -> Vec<Vec<u8>> {
     let guide = "numStrands 2 is_sorted 0\n\
                  strand 0 numVerts 3 texcoord 0.5 0.25 0.0\n0 0 0\n0 1 0\n0.1 2 -0.0\n\
                  strand 1 numVerts 2 texcoord 0.75 0.125 0.0\n1 0 0\n1 1e-3 -1.5e2\n";
@@ -25,7 +25,7 @@ pub fn texts() -> Vec<Vec<u8>> {
 }
 
 /// Lines with two vertices each, one with many, a negative index, and a mesh around them.
-pub fn obj_lines() -> Vec<Vec<u8>> {
+fn obj_lines() -> Vec<Vec<u8>> {
     let blender = "# comment\nmtllib a.mtl\no Mesh\nv 0 0 0\nv 0 1 0\nv 0 2 0\nv 1 0 0\nv 1 1 0\nl 1 2\nl 2 3\nl 4 5\n";
     let mixed =
         "v 0 0 0 1\nv 0 1 0 1\nv 0 2 0 1\nvt 0 0\nvn 0 1 0\nl 3/1 2/1 1/1\nv 5 5 5\nv 6 6 6\nl -1 -2\nf 1 2 3\n";
@@ -33,7 +33,7 @@ pub fn obj_lines() -> Vec<Vec<u8>> {
 }
 
 /// A 4.x file with every array.
-pub fn tressfx4(strands: u32, vertices: u32) -> Vec<u8> {
+pub(crate) fn tressfx4(strands: u32, vertices: u32) -> Vec<u8> {
     let (header, total) = (160, strands * vertices);
     let uv = header + 16 * total;
     let vertex_uv = uv + 8 * strands;
@@ -51,7 +51,7 @@ pub fn tressfx4(strands: u32, vertices: u32) -> Vec<u8> {
 }
 
 /// A 3.x file with every array.
-pub fn tressfx3(strands: u32, vertices: u32) -> Vec<u8> {
+fn tressfx3(strands: u32, vertices: u32) -> Vec<u8> {
     let (header, total) = (296, strands * vertices);
     let thickness = header + 12 * total;
     let uv = thickness + 4 * strands;
@@ -70,7 +70,7 @@ pub fn tressfx3(strands: u32, vertices: u32) -> Vec<u8> {
 }
 
 /// A `.hair` file with the arrays whose bits are set; without the segments, all strands must have as many as the first.
-pub fn hair(segments: &[u16], bits: u32) -> Vec<u8> {
+fn hair(segments: &[u16], bits: u32) -> Vec<u8> {
     let points: u32 = segments.iter().map(|&s| u32::from(s) + 1).sum();
     let mut file = b"HAIR".to_vec();
     push_u32(&mut file, &[segments.len() as u32, points, bits, segments[0].into()]);

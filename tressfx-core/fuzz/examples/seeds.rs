@@ -1,4 +1,4 @@
-//! Writes the first corpus of every target: small valid files. Run it in this folder: `cargo run --bin seeds`.
+//! Writes the first corpus of every target: small valid files. Run it in this folder: `cargo run --example seeds`.
 
 #[path = "../../tests/support/samples.rs"]
 mod samples;

@@ -1,0 +1,36 @@
+// Tapered capsules.
+
+import package::vector::{across, direction_or};
+
+struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
+
+/// The point of the axis that is nearest to `point`, and the radius there.
+fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
+    let axis = capsule.b - capsule.a;
+    let squared = dot(axis, axis);
+    let t = select(0.0, clamp(dot(point - capsule.a, axis) / squared, 0.0, 1.0), squared > 0.0);
+    return vec4(capsule.a + t * axis, capsule.radius_a + t * (capsule.radius_b - capsule.radius_a));
+}
+
+/// Turns a vertex about its parent until it is on a sphere that it is inside of: its distance from the parent stays. In the
+/// plane of parent, vertex and centre that is a triangle of three known sides. Where the parent is so deep inside that no
+/// turn is enough, the vertex ends straight outwards.
+fn turned_out(parent: vec3<f32>, vertex: vec3<f32>, length: f32, sphere: vec4<f32>) -> vec3<f32> {
+    let from_center = parent - sphere.xyz;
+    let distance = sqrt(dot(from_center, from_center));
+    let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
+    let reach = max(2.0 * distance * length, 1e-24);
+    let c = clamp((sphere.w * sphere.w - distance * distance - length * length) / reach, -1.0, 1.0);
+    let edge = vertex - parent;
+    let sideways = direction_or(edge - dot(edge, outwards) * outwards, across(outwards));
+    return parent + length * (c * outwards + sqrt(max(1.0 - c * c, 0.0)) * sideways);
+}
+
+/// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin
+/// et al. 2014). The speed away from the surface is lost too, since it is the push's own; nothing sticks.
+fn slid(displacement: vec3<f32>, normal: vec3<f32>, depth: f32, friction: f32) -> vec3<f32> {
+    let along_normal = dot(displacement, normal);
+    let slide = displacement - along_normal * normal;
+    let lost = min(friction * depth, sqrt(dot(slide, slide)));
+    return slide - lost * direction_or(slide, vec3(0.0)) + min(along_normal, 0.0) * normal;
+}

@@ -1,0 +1,87 @@
+// Collision with tapered capsules that move with the head, from the root to the tip. One thread a guide.
+//
+// A vertex inside a capsule is not pushed but turned out about its parent, and what hangs on it follows, so that every edge
+// keeps its length. Strands that touch nothing stay as they are, to the bit.
+
+import package::capsule::{GpuCapsule, nearest, slid, turned_out};
+import package::constants::{GUIDES, STRANDS, VERTICES};
+import package::grid::{GROUP, thread_index};
+import package::step::Step;
+import package::vector::{direction_or, rotate, rotate_back};
+
+@group(0) @binding(0) var<uniform> step: Step;
+/// In the space of the rest pose.
+@group(0) @binding(1) var<storage, read> capsules: array<GpuCapsule>;
+@group(0) @binding(2) var<storage, read> rest_lengths: array<f32>;
+@group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
+
+/// A vertex that leaves one capsule may enter another.
+const ROUNDS: u32 = 4u;
+
+struct Contact { point: vec3<f32>, touched: bool, normal: vec3<f32> }
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+        @builtin(local_invocation_index) lane: u32) {
+    let strand = thread_index(group, groups, lane);
+    if (strand >= GUIDES) { return; }
+    var parent = positions[strand].xyz;
+    var moved = false;
+    for (var i = 1u; i < VERTICES; i++) {
+        let vertex = positions[i * STRANDS + strand];
+        var point = vertex.xyz;
+        if (vertex.w > 0.0) {
+            let length = rest_lengths[(i - 1u) * GUIDES + strand];
+            if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
+            let contact = resolved(in_head(parent), in_head(point), length);
+            if (contact.touched) {
+                rub(i * GUIDES + strand, contact, in_head(point));
+                point = in_world(contact.point);
+            }
+            moved = moved || contact.touched;
+        } else {
+            moved = false;
+        }
+        if (moved) { positions[i * STRANDS + strand] = vec4(point, vertex.w); }
+        parent = point;
+    }
+}
+
+/// Where a vertex is when it has left all capsules.
+fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32) -> Contact {
+    var contact = Contact(start, false, vec3(0.0));
+    for (var round = 0u; round < ROUNDS; round++) {
+        var touched = false;
+        for (var i = 0u; i < arrayLength(&capsules); i++) {
+            let sphere = nearest(capsules[i], contact.point);
+            let from_center = contact.point - sphere.xyz;
+            if (dot(from_center, from_center) < sphere.w * sphere.w) {
+                contact.point = turned_out(parent, contact.point, length, sphere);
+                contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
+                touched = true;
+            }
+        }
+        if (!touched) { break; }
+        contact.touched = true;
+    }
+    return contact;
+}
+
+/// Changes the past of a vertex, so that its velocity is what friction leaves of it. Seen from the head, which carries the
+/// capsules.
+fn rub(i: u32, contact: Contact, start: vec3<f32>) {
+    let carried = rotate(step.motion_rotation, previous[i].xyz) + step.motion_translation;
+    let depth = max(dot(contact.point - start, contact.normal), 0.0);
+    let displacement = slid(contact.point - in_head(carried), contact.normal, depth, step.friction);
+    let past = in_world(contact.point - displacement) - step.motion_translation;
+    previous[i] = vec4(rotate_back(step.motion_rotation, past), 0.0);
+}
+
+fn in_head(point: vec3<f32>) -> vec3<f32> {
+    return rotate_back(step.head_rotation, point - step.head_translation);
+}
+
+fn in_world(point: vec3<f32>) -> vec3<f32> {
+    return rotate(step.head_rotation, point) + step.head_translation;
+}

@@ -1,0 +1,122 @@
+// Wind, length constraints, and the guard against non-finite strands. One thread a guide.
+//
+// All happens in one walk. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is the same as one
+// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent ("follow
+// the leader": Mueller, Kim, Chentanez 2012, positions only). So a vertex is loaded and stored once.
+
+import package::constants::{GUIDES, STRANDS, SWEEPS, VERTICES};
+import package::grid::{GROUP, thread_index};
+import package::step::Step;
+import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
+@if(wind) import package::wind::{across_edge, wind_of};
+
+@group(0) @binding(0) var<uniform> step: Step;
+@group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> rest_lengths: array<f32>;
+@group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
+/// Strands that were reset because they had become non-finite.
+@group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
+
+const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+        @builtin(local_invocation_index) lane: u32) {
+    let strand = thread_index(group, groups, lane);
+    if (strand >= GUIDES) { return; }
+    @if(wind) let wind = wind_of(step, strand);
+    @if(wind) var blown_edge = DOWN;
+
+    // Vertex `t - k` in `window[k]`, and in `lengths[k]` its rest length from its parent.
+    var window: array<vec4<f32>, SWEEPS + 1u>;
+    var lengths: array<f32, SWEEPS + 1u>;
+    var next = positions[strand];
+    var after = positions[STRANDS + strand];
+    var next_length = 0.0;
+    var after_length = rest_lengths[strand];
+    var parent = next.xyz;
+    var direction = DOWN;
+    var finite = true;
+    for (var t = 0u; t < VERTICES + SWEEPS; t++) {
+        // Loaded before anything is stored: loads behind a store to the same buffer would wait for it.
+        let ahead = min(t + 2u, VERTICES - 1u);
+        let position_ahead = positions[ahead * STRANDS + strand];
+        let length_ahead = rest_lengths[(ahead - 1u) * GUIDES + strand];
+        for (var k = SWEEPS; k > 0u; k--) {
+            window[k] = window[k - 1u];
+            lengths[k] = lengths[k - 1u];
+        }
+        @if(wind) {
+            // The tip has no edge of its own and takes the last one's.
+            blown_edge = direction_or(after.xyz - next.xyz, blown_edge);
+            if (next.w > 0.0) { next = vec4(next.xyz + across_edge(wind, blown_edge), next.w); }
+        }
+        window[0] = next;
+        lengths[0] = next_length;
+        for (var k = 0u; k < SWEEPS; k++) {
+            if (t > k && t < VERTICES + k) {
+                let correction = stretch(window[k + 1u], window[k], lengths[k]);
+                window[k + 1u] += vec4(window[k + 1u].w * correction, 0.0);
+                window[k] -= vec4(window[k].w * correction, 0.0);
+            }
+        }
+        if (t >= SWEEPS) {
+            let vertex = window[SWEEPS];
+            direction = direction_or(vertex.xyz - parent, direction);
+            parent = select(vertex.xyz, parent + lengths[SWEEPS] * direction, vertex.w > 0.0);
+            finite = finite && is_finite(parent);
+            positions[(t - SWEEPS) * STRANDS + strand] = vec4(parent, vertex.w);
+        }
+        next = after;
+        next_length = after_length;
+        after = position_ahead;
+        after_length = length_ahead;
+    }
+    @if(pinned_tips) reach(strand);
+    if (!finite) { recover(strand); }
+}
+
+/// What moves the ends of an edge to its rest length, for an inverse mass of 1.
+fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
+    let edge = b.xyz - a.xyz;
+    let squared = dot(edge, edge);
+    let mass = a.w + b.w;
+    if (mass == 0.0 || squared <= NO_LENGTH) { return vec3(0.0); }
+    return edge * ((1.0 - length * inverseSqrt(squared)) / mass);
+}
+
+/// Puts a strand into its rest pose, at rest, and counts it.
+fn recover(strand: u32) {
+    for (var i = 0u; i < VERTICES; i++) {
+        let vertex = rest[i * GUIDES + strand];
+        let shape = rotate(step.head_rotation, vertex.xyz) + step.head_translation;
+        positions[i * STRANDS + strand] = vec4(shape, vertex.w);
+        previous[i * GUIDES + strand] = vec4(shape, 0.0);
+    }
+    atomicAdd(&non_finite, 1u);
+}
+
+/// Where the tip is pinned too, lengths are handed back and forth between both ends (FABRIK: Aristidou, Lasenby 2011).
+@if(pinned_tips)
+fn reach(strand: u32) {
+    if (positions[(VERTICES - 1u) * STRANDS + strand].w > 0.0) { return; }
+    for (var round = 0u; round < 4u; round++) {
+        pull(strand, i32(VERTICES) - 1, -1);
+        pull(strand, 0, 1);
+    }
+}
+
+/// Places every movable vertex at its rest length from the vertex before it, from one end of the strand to the other.
+@if(pinned_tips)
+fn pull(strand: u32, end: i32, forward: i32) {
+    var parent = positions[u32(end) * STRANDS + strand].xyz;
+    var direction = DOWN;
+    for (var i = end + forward; i >= 0 && i < i32(VERTICES); i += forward) {
+        let vertex = positions[u32(i) * STRANDS + strand];
+        let length = rest_lengths[u32(min(i, i - forward)) * GUIDES + strand];
+        direction = direction_or(vertex.xyz - parent, direction);
+        parent = select(vertex.xyz, parent + length * direction, vertex.w > 0.0);
+        positions[u32(i) * STRANDS + strand] = vec4(parent, vertex.w);
+    }
+}

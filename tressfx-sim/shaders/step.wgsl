@@ -1,0 +1,31 @@
+// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one sub-step.
+
+struct Step {
+    /// Rest pose to world: the pose of the head at the end of the sub-step.
+    head_rotation: vec4<f32>,
+    head_translation: vec3<f32>,
+    /// Share of the velocity that is kept.
+    keep: f32,
+    /// The rigid motion of the head during the sub-step.
+    motion_rotation: vec4<f32>,
+    motion_translation: vec3<f32>,
+    /// Share of the head's motion that the strands make at once.
+    shock: f32,
+    /// Displacement by gravity.
+    gravity: vec3<f32>,
+    /// The longest displacement relative to the head.
+    max_displacement: f32,
+    /// Displacement by the wind from the four corners of its cone, across an edge.
+    wind: array<vec4<f32>, 4>,
+    global_stiffness: f32,
+    /// Share of the strand, from the root, that the global shape reaches.
+    global_range: f32,
+    /// Half of the stiffness: each of the two vertices moves half of the way.
+    local_stiffness: f32,
+    /// Coefficient of sliding friction.
+    friction: f32,
+    tip_separation: f32,
+    /// Not 0: the strands go to their rest pose, at rest.
+    reset: u32,
+    padding: vec2<u32>,
+}

@@ -1,0 +1,45 @@
+// Rotations, and directions that stay finite whatever they are given.
+
+/// Below this squared length a vector has no direction.
+const NO_LENGTH: f32 = 1e-24;
+
+/// Turns a vector by a unit quaternion.
+fn rotate(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    let t = 2.0 * cross(rotation.xyz, v);
+    return v + rotation.w * t + cross(rotation.xyz, t);
+}
+
+/// Turns a vector back.
+fn rotate_back(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
+    return rotate(vec4(-rotation.xyz, rotation.w), v);
+}
+
+/// The direction of a vector, or `otherwise` where it has none.
+fn direction_or(v: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    let squared = dot(v, v);
+    return select(otherwise, v * inverseSqrt(squared), squared > NO_LENGTH);
+}
+
+/// A unit vector across a unit vector.
+fn across(u: vec3<f32>) -> vec3<f32> {
+    let axis = select(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), abs(u.x) > 0.6);
+    return normalize(cross(u, axis));
+}
+
+/// Applies the smallest rotation that takes the unit vector `u` to the unit vector `v`. No trigonometry, no quaternion:
+/// R = c + [a]x + a a^T / (1 + c), where a = u x v and c = u . v. Opposite vectors are joined by a half turn.
+fn turn(u: vec3<f32>, v: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
+    let c = dot(u, v);
+    if (c < -0.999999) {
+        let axis = across(u);
+        return 2.0 * dot(axis, w) * axis - w;
+    }
+    let a = cross(u, v);
+    return c * w + cross(a, w) + a * (dot(a, w) / (1.0 + c));
+}
+
+/// Whether all three are numbers. Looks at the bits: compilers may assume that comparisons never see a NaN.
+fn is_finite(v: vec3<f32>) -> bool {
+    let exponents = bitcast<vec3<u32>>(v) & vec3(0x7f800000u);
+    return all(exponents != vec3(0x7f800000u));
+}

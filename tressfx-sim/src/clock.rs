@@ -1,0 +1,243 @@
+//! From frames of any length to sub-steps of one length.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use tressfx_core::strands::Bounds;
+use tressfx_core::view::Pose;
+
+use crate::error::SimError;
+use crate::params::{ParamError, within};
+use crate::wind::Wind;
+
+/// How time is cut, and what counts as a teleport. The same for all sections.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClockParams {
+    /// Length of a sub-step, s.
+    pub sub_step: f64,
+    /// The most time that one frame simulates, s; the rest is dropped, and reported.
+    pub max_frame: f64,
+    /// A head that moves further than this in one frame has teleported; in radii of the groom.
+    pub teleport_distance: f32,
+    /// A head that turns further than this in one frame has teleported; radians, pi or more: never.
+    pub teleport_angle: f32,
+}
+
+impl Default for ClockParams {
+    fn default() -> Self {
+        Self { sub_step: 1.0 / 240.0, max_frame: 0.1, teleport_distance: 10.0, teleport_angle: 2.0 }
+    }
+}
+
+impl ClockParams {
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        within("sub_step", self.sub_step, 1e-5..=0.1)?;
+        within("max_frame", self.max_frame, self.sub_step..=10.0)?;
+        within("teleport_distance", self.teleport_distance, 0.0..=f32::MAX)?;
+        within("teleport_angle", self.teleport_angle, 0.0..=f32::MAX)
+    }
+}
+
+/// What one frame is given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepInput {
+    /// Seconds since the last frame; 0 or less simulates nothing.
+    pub dt: f64,
+    /// Where the head is at the end of the frame: from the space of the rest pose to the world, in the unit of the file.
+    pub head: Pose,
+    /// The wind, if any.
+    pub wind: Option<Wind>,
+}
+
+impl StepInput {
+    /// A frame without wind.
+    pub fn new(dt: f64, head: Pose) -> Self {
+        Self { dt, head, wind: None }
+    }
+
+    /// Checks it.
+    ///
+    /// # Errors
+    /// What is not finite, and what is wrong with the wind.
+    pub fn validate(&self) -> Result<(), SimError> {
+        let numbers = [
+            ("dt", self.dt.is_finite()),
+            ("head.rotation", self.head.rotation.is_finite() && self.head.rotation.length_squared() > 0.5),
+            ("head.translation", self.head.translation.is_finite()),
+        ];
+        if let Some((name, _)) = numbers.iter().find(|(_, finite)| !finite) {
+            return Err(SimError::NonFinite { name });
+        }
+        self.wind.iter().try_for_each(Wind::validate)
+    }
+}
+
+/// One sub-step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SubStep {
+    /// Its length, s.
+    pub length: f64,
+    /// Length of this one over that of the one before: 1, but for the first one after a change of [`ClockParams`].
+    pub length_ratio: f64,
+    /// Simulated time at its end, s.
+    pub time: f64,
+    /// The head at its end.
+    pub head: Pose,
+    /// The rigid motion of the head during it; the identity exactly if the head has not moved.
+    pub motion: Pose,
+    /// The acceleration of the head in this frame, the largest within the groom's bounds, units of the file / s^2.
+    pub acceleration: f32,
+}
+
+/// What one frame consists of.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// The strands go to rest where this head is, before the sub-steps.
+    pub reset: Option<Pose>,
+    /// Whether that is because of a teleport.
+    pub teleported: bool,
+    /// What is simulated, in order.
+    pub sub_steps: Vec<SubStep>,
+    /// Time that was dropped because the frame was too long, s.
+    pub dropped: f64,
+}
+
+/// Cuts frames into sub-steps.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    params: ClockParams,
+    bounds: Bounds,
+    /// Simulated time, s.
+    time: f64,
+    /// Time that is not simulated yet, s.
+    behind: f64,
+    last_length: f64,
+    /// The head at the end of the last frame; `None` asks for a reset.
+    head: Option<Pose>,
+    /// The head at the end of the last sub-step.
+    simulated: Pose,
+    /// Velocities of the corners of the bounds in the last frame.
+    velocities: Option<[Vec3; 8]>,
+}
+
+/// A share of a sub-step that is not worth waiting for: so that 2 s are as many sub-steps at any frame rate.
+const TOLERANCE: f64 = 1e-6;
+
+impl Clock {
+    /// A clock for a groom with these bounds, at 0 s.
+    ///
+    /// # Errors
+    /// See [`ClockParams::validate`].
+    pub fn new(params: ClockParams, bounds: Bounds) -> Result<Self, ParamError> {
+        params.validate()?;
+        let last_length = params.sub_step;
+        let simulated = Pose::IDENTITY;
+        Ok(Self { params, bounds, time: 0.0, behind: 0.0, last_length, head: None, simulated, velocities: None })
+    }
+
+    /// The parameters.
+    pub fn params(&self) -> &ClockParams {
+        &self.params
+    }
+
+    /// Changes the parameters, from the next frame on.
+    ///
+    /// # Errors
+    /// See [`ClockParams::validate`].
+    pub fn set_params(&mut self, params: ClockParams) -> Result<(), ParamError> {
+        params.validate()?;
+        self.params = params;
+        Ok(())
+    }
+
+    /// Simulated time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Asks for a reset in the next frame.
+    pub fn reset(&mut self) {
+        self.head = None;
+    }
+
+    /// The rigid motion of the head since the last sub-step: what the frame's strands must make to be where the head is now.
+    pub fn head_lead(&self) -> Pose {
+        motion(&self.simulated, &self.head.unwrap_or(self.simulated))
+    }
+
+    /// Cuts a frame. The head moves evenly during it.
+    pub fn advance(&mut self, dt: f64, head: Pose) -> Frame {
+        let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
+        let start = if teleported { None } else { self.head };
+        let mut frame = Frame { teleported, ..Frame::default() };
+        let last = start.unwrap_or_else(|| {
+            frame.reset = Some(head);
+            self.simulated = head;
+            self.velocities = None;
+            head
+        });
+        let acceleration = self.acceleration(dt, &last, &head);
+        let dt = dt.max(0.0);
+        frame.dropped = (self.behind + dt - self.params.max_frame).clamp(0.0, dt);
+        let simulated = dt - frame.dropped;
+        let length = self.params.sub_step;
+        let count = ((self.behind + simulated) / length + TOLERANCE).floor() as u32;
+        for index in 1..=count {
+            let into_frame = f64::from(index) * length - self.behind;
+            let pose = interpolate(&last, &head, into_frame / simulated);
+            self.time += length;
+            frame.sub_steps.push(SubStep {
+                length,
+                length_ratio: length / self.last_length,
+                time: self.time,
+                head: pose,
+                motion: motion(&self.simulated, &pose),
+                acceleration,
+            });
+            self.simulated = pose;
+            self.last_length = length;
+        }
+        self.behind += simulated - f64::from(count) * length;
+        self.head = Some(head);
+        frame
+    }
+
+    fn is_teleport(&self, last: &Pose, head: &Pose) -> bool {
+        let center = self.bounds.center();
+        let distance = head.transform(center).distance(last.transform(center));
+        let angle = last.rotation.angle_between(head.rotation);
+        distance > self.params.teleport_distance * self.bounds.radius() || angle > self.params.teleport_angle
+    }
+
+    fn acceleration(&mut self, dt: f64, last: &Pose, head: &Pose) -> f32 {
+        if dt <= 0.0 {
+            return 0.0;
+        }
+        let dt = dt as f32;
+        let now = corners(&self.bounds).map(|corner| (head.transform(corner) - last.transform(corner)) / dt);
+        let before = self.velocities.replace(now).unwrap_or(now);
+        now.iter().zip(before).map(|(now, before)| now.distance(before) / dt).fold(0.0, f32::max)
+    }
+}
+
+fn corners(bounds: &Bounds) -> [Vec3; 8] {
+    std::array::from_fn(|corner| {
+        let pick = |bit: usize, min, max| if corner & bit == 0 { min } else { max };
+        let (min, max) = (bounds.min, bounds.max);
+        Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
+    })
+}
+
+/// Ends and a head at rest are met exactly.
+fn interpolate(from: &Pose, to: &Pose, t: f64) -> Pose {
+    if from == to || t >= 1.0 - TOLERANCE { *to } else { from.interpolate(to, t as f32) }
+}
+
+/// The motion that takes `from` to `to`; the identity exactly for a head at rest.
+fn motion(from: &Pose, to: &Pose) -> Pose {
+    if from == to { Pose::IDENTITY } else { to.after(&from.inverse()) }
+}

@@ -1,0 +1,145 @@
+//! Parameters of a section, in SI units.
+
+use std::ops::RangeInclusive;
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// How the strands of a section move. Metres, seconds, kilograms; converted to the unit of the file when uploaded.
+///
+/// Stiffnesses and damping are given for a step of 1/60 s, where TressFX puts them, and converted to the sub-step that is
+/// simulated ([`crate::step`]), so that neither the frame rate nor the sub-step changes what they mean.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SimParams {
+    /// Acceleration by gravity, m/s^2.
+    pub gravity: Vec3,
+    /// Damping of the velocity: in a second it falls to exp(-60 * damping), as in TressFX 4.1. From 0 to 1.
+    pub damping: f32,
+    /// How stiffly a strand keeps its bends and curls: 0 hangs like a chain, 1 is as stiff as the iterations allow.
+    pub local_stiffness: f32,
+    /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness: more of them make the
+    /// strand stiffer along its length, not stiffer at each vertex.
+    pub local_iterations: u32,
+    /// How strongly a strand is pulled to where the head carries its rest pose, from 0 to 1; falls off towards the end of
+    /// [`SimParams::global_range`].
+    pub global_stiffness: f32,
+    /// The share of the strand, from the root, that the global shape reaches, from 0 to 1. The pull falls off linearly over
+    /// it, instead of ending at a vertex as in TressFX, where the strand kinks.
+    pub global_range: f32,
+    /// Sweeps of the distance constraints in each sub-step, 0 to 16, before each vertex is placed at its exact distance from
+    /// its parent. Lengths are exact without any; sweeps let the tip pull the root's side, as a real strand does.
+    pub length_iterations: u32,
+    /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1.
+    pub shock: f32,
+    /// Above this acceleration of the head, m/s^2, anywhere in the groom's bounds, the strands make its whole motion at once.
+    pub shock_acceleration: f32,
+    /// Speed relative to the head that no vertex exceeds, m/s. Also bounds what the wind does in a sub-step.
+    pub max_speed: f32,
+    /// How much further than at the root a follow strand is from its guide at the tip: the offset of vertex `i` is multiplied
+    /// by `1 + tip_separation * i / (vertices - 1)`. `None` keeps the groom's own.
+    pub tip_separation: Option<f32>,
+    /// Acceleration, 1/s, that a wind of 1 m/s across a strand gives it.
+    pub wind_drag: f32,
+    /// Coefficient of Coulomb friction on capsules: 0 is ice. From 0 to 1.
+    pub friction: f32,
+}
+
+impl Default for SimParams {
+    fn default() -> Self {
+        Self {
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            damping: 0.035,
+            local_stiffness: 0.9,
+            local_iterations: 2,
+            global_stiffness: 0.2,
+            global_range: 0.5,
+            length_iterations: 2,
+            shock: 0.75,
+            shock_acceleration: 300.0,
+            max_speed: 20.0,
+            tip_separation: None,
+            wind_drag: 3.0,
+            friction: 0.4,
+        }
+    }
+}
+
+/// A parameter outside its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("parameter {name} = {value} must be {range}")]
+pub struct ParamError {
+    /// Its name.
+    pub name: &'static str,
+    /// What it was given.
+    pub value: String,
+    /// What it may be, in words.
+    pub range: String,
+}
+
+/// Refuses what is outside a range, and what is not a number.
+pub(crate) fn within<T: PartialOrd + std::fmt::Display>(
+    name: &'static str,
+    value: T,
+    range: RangeInclusive<T>,
+) -> Result<(), ParamError> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let range = format!("from {} to {}", range.start(), range.end());
+    Err(ParamError { name, value: value.to_string(), range })
+}
+
+impl SimParams {
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        within("gravity (its length)", self.gravity.length(), 0.0..=1000.0)?;
+        within("damping", self.damping, 0.0..=1.0)?;
+        within("local_stiffness", self.local_stiffness, 0.0..=1.0)?;
+        within("local_iterations", self.local_iterations, 1..=16)?;
+        within("global_stiffness", self.global_stiffness, 0.0..=1.0)?;
+        within("global_range", self.global_range, 0.0..=1.0)?;
+        within("length_iterations", self.length_iterations, 0..=16)?;
+        within("shock", self.shock, 0.0..=1.0)?;
+        within("shock_acceleration", self.shock_acceleration, 0.0..=1e9)?;
+        within("max_speed", self.max_speed, 0.001..=1000.0)?;
+        within("tip_separation", self.tip_separation.unwrap_or(0.0), -1.0..=100.0)?;
+        within("wind_drag", self.wind_drag, 0.0..=1000.0)?;
+        within("friction", self.friction, 0.0..=1.0)
+    }
+
+    /// Whether the global shape pulls at all.
+    pub fn has_global_shape(&self) -> bool {
+        self.global_stiffness > 0.0 && self.global_range > 0.0
+    }
+
+    /// Whether strands of so many vertices keep their bends at all: two vertices have none.
+    pub fn has_local_shape(&self, vertices: u32) -> bool {
+        self.local_stiffness > 0.0 && vertices > 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_valid() {
+        SimParams::default().validate().unwrap();
+    }
+
+    #[test]
+    fn a_parameter_outside_its_range_is_refused_by_name() {
+        let error = SimParams { damping: 1.5, ..SimParams::default() }.validate().unwrap_err();
+        assert_eq!(error.to_string(), "parameter damping = 1.5 must be from 0 to 1");
+        let error = SimParams { local_iterations: 0, ..SimParams::default() }.validate().unwrap_err();
+        assert_eq!(error.to_string(), "parameter local_iterations = 0 must be from 1 to 16");
+        let error = SimParams { max_speed: f32::NAN, ..SimParams::default() }.validate().unwrap_err();
+        assert_eq!(error.name, "max_speed");
+        let gravity = Vec3::new(0.0, f32::INFINITY, 0.0);
+        assert_eq!(SimParams { gravity, ..SimParams::default() }.validate().unwrap_err().value, "inf");
+    }
+}

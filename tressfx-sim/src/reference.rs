@@ -1,0 +1,52 @@
+//! The kernels once more, in f64 and one strand at a time: what the GPU is held against.
+//!
+//! Every function does what the kernel of the same name does, with the same [`Step`](crate::step::Step). Arrays are
+//! strand-major, as in [`Strands`](tressfx_core::strands::Strands).
+
+mod collide;
+mod follow;
+mod integrate;
+mod length;
+mod local_shape;
+mod simulation;
+mod tangents;
+mod vector;
+mod velocity_shock;
+
+use glam::{DVec3, Vec4};
+
+pub use collide::collide;
+pub use follow::follow;
+pub use integrate::integrate;
+pub use length::length;
+pub use local_shape::local_shape;
+pub use simulation::Simulation;
+pub use tangents::tangents;
+pub use velocity_shock::velocity_shock;
+
+/// One guide; a slice of each array of its section.
+#[derive(Debug)]
+pub struct Guide<'a> {
+    /// Rest position and inverse mass of every vertex.
+    pub rest: &'a [Vec4],
+    /// Rest length of the edge behind every vertex; 0 at the tip.
+    pub rest_lengths: &'a [f32],
+    /// Position of every vertex.
+    pub positions: &'a mut [DVec3],
+    /// Position of every vertex one sub-step ago.
+    pub previous: &'a mut [DVec3],
+}
+
+impl Guide<'_> {
+    fn vertices(&self) -> usize {
+        self.rest.len()
+    }
+
+    fn inverse_mass(&self, vertex: usize) -> f64 {
+        self.rest[vertex].w.into()
+    }
+
+    fn is_pinned(&self, vertex: usize) -> bool {
+        self.rest[vertex].w == 0.0
+    }
+}

@@ -1,0 +1,87 @@
+//! `hair.sim.collide` in f64.
+
+use glam::DVec3;
+use tressfx_core::shape::Capsule;
+
+use super::Guide;
+use super::vector::{across, direction_or, rotate_back};
+use crate::step::Step;
+
+const ROUNDS: u32 = 4;
+
+/// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
+pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
+    let mut moved = false;
+    for i in 1..guide.vertices() {
+        if guide.is_pinned(i) {
+            moved = false;
+            continue;
+        }
+        let parent = guide.positions[i - 1];
+        let length = f64::from(guide.rest_lengths[i - 1]);
+        if moved {
+            guide.positions[i] = parent + length * direction_or(guide.positions[i] - parent, DVec3::NEG_Y);
+        }
+        let start = step.in_head(guide.positions[i]);
+        if let Some((point, normal)) = resolved(capsules, step.in_head(parent), start, length) {
+            let depth = (point - start).dot(normal).max(0.0);
+            let displacement = point - step.in_head(step.carry(guide.previous[i]));
+            let kept = slid(displacement, normal, depth, f64::from(step.friction));
+            let past = step.in_world(point - kept) - step.motion_translation.as_dvec3();
+            guide.previous[i] = rotate_back(step.motion_rotation, past);
+            guide.positions[i] = step.in_world(point);
+            moved = true;
+        }
+    }
+}
+
+/// Where a vertex is when it has left all capsules, and the last surface's normal; `None` if it was outside.
+fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
+    let mut point = start;
+    let mut normal = None;
+    for _ in 0..ROUNDS {
+        let before = normal;
+        let mut touched = false;
+        for capsule in capsules {
+            let (center, radius) = nearest(capsule, point);
+            if point.distance_squared(center) < radius * radius {
+                point = turned_out(parent, point, length, center, radius);
+                normal = Some(direction_or(point - center, before.unwrap_or(DVec3::ZERO)));
+                touched = true;
+            }
+        }
+        if !touched {
+            break;
+        }
+    }
+    normal.map(|normal| (point, normal))
+}
+
+fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {
+    let (a, b) = (capsule.a.as_dvec3(), capsule.b.as_dvec3());
+    let (radius_a, radius_b) = (f64::from(capsule.radius_a), f64::from(capsule.radius_b));
+    let axis = b - a;
+    let squared = axis.length_squared();
+    let t = if squared > 0.0 { ((point - a).dot(axis) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (a + t * axis, radius_a + t * (radius_b - radius_a))
+}
+
+/// The vertex on the sphere, at the same distance from its parent.
+fn turned_out(parent: DVec3, vertex: DVec3, length: f64, center: DVec3, radius: f64) -> DVec3 {
+    let from_center = parent - center;
+    let distance = from_center.length();
+    let outwards = direction_or(from_center, DVec3::Y);
+    let reach = (2.0 * distance * length).max(1e-24);
+    let c = ((radius * radius - distance * distance - length * length) / reach).clamp(-1.0, 1.0);
+    let edge = vertex - parent;
+    let sideways = direction_or(edge - edge.dot(outwards) * outwards, across(outwards));
+    parent + length * (c * outwards + (1.0 - c * c).max(0.0).sqrt() * sideways)
+}
+
+/// What friction leaves of a displacement along a surface.
+fn slid(displacement: DVec3, normal: DVec3, depth: f64, friction: f64) -> DVec3 {
+    let along_normal = displacement.dot(normal);
+    let slide = displacement - along_normal * normal;
+    let lost = (friction * depth).min(slide.length());
+    slide - lost * direction_or(slide, DVec3::ZERO) + along_normal.min(0.0) * normal
+}

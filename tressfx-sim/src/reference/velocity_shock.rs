@@ -1,0 +1,14 @@
+//! `hair.sim.velocity_shock` in f64.
+
+use super::Guide;
+use crate::step::Step;
+
+/// Position and past make a share of the head's motion.
+pub fn velocity_shock(step: &Step, guide: &mut Guide) {
+    let shock = f64::from(step.shock);
+    for i in (0..guide.vertices()).filter(|&i| guide.rest[i].w != 0.0) {
+        for point in [&mut guide.positions[i], &mut guide.previous[i]] {
+            *point += shock * (step.carry(*point) - *point);
+        }
+    }
+}

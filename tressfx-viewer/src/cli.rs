@@ -1,0 +1,193 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::Vec3;
+
+use crate::camera::Camera;
+
+/// Hair and fur, simulated and rendered strand by strand on the GPU.
+#[derive(Debug, Parser)]
+#[command(name = "tressfx", version)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Say what is in groom files
+    Info(Info),
+    /// Simulate a groom and render it
+    Render(Render),
+    /// Simulate a groom and write its pose as a 4.x .tfx file
+    Simulate(Simulate),
+    /// Convert a groom file; the ending of OUT chooses the format (.tfx: 4.x binary, .txt: 2013 text)
+    Convert(Convert),
+    /// List the graphics adapters of this machine
+    Adapters,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Info {
+    /// Files, or builtin:NAME[:STRANDS[:VERTICES]]
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) grooms: Vec<String>,
+    /// Write JSON: an array with one object a file
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Convert {
+    /// The file to read, of any format, or builtin:NAME[:STRANDS[:VERTICES]]
+    pub(crate) input: String,
+    /// The file to write
+    pub(crate) output: PathBuf,
+}
+
+/// What `render` and `simulate` share.
+#[derive(Debug, Args)]
+pub(crate) struct Scene {
+    /// Files, or builtin:NAME[:STRANDS[:VERTICES]]; several become the sections of one groom
+    #[arg(required = true, value_name = "GROOM")]
+    pub(crate) grooms: Vec<String>,
+    /// Frames to simulate
+    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) frames: u32,
+    /// Frames a second
+    #[arg(long, default_value_t = 60.0, value_parser = fps)]
+    pub(crate) fps: f64,
+    /// Wind in metres a second
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub(crate) wind: Option<Vec3>,
+    /// How the head moves
+    #[arg(long, value_enum, default_value_t = Motion::Still)]
+    pub(crate) motion: Motion,
+    /// Parameters of simulation and look
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) params: Option<PathBuf>,
+    /// Follow strands of each guide; without it, what the file says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
+    pub(crate) follow: Option<u32>,
+    /// The backend that runs the passes
+    #[arg(long, value_enum, default_value_t = BackendName::Wgpu)]
+    pub(crate) backend: BackendName,
+    /// A part of the name of the adapter to use
+    #[arg(long, value_name = "NAME")]
+    pub(crate) adapter: Option<String>,
+    /// Write figures about the run as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) stats: Option<PathBuf>,
+    /// Print the passes of a frame as a table
+    #[arg(long)]
+    pub(crate) print_passes: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// A .png of the last frame, a .gif or .apng of all, or a folder (ending in /) with every frame
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
+    pub(crate) size: [u32; 2],
+    /// `auto`, or EYE,TARGET,FOV: seven numbers, the last in degrees
+    #[arg(long, default_value = "auto", value_parser = Camera::parse, allow_hyphen_values = true)]
+    pub(crate) camera: Camera,
+    /// Fragments of a pixel that are sorted exactly
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) k: u32,
+    /// A mesh to be drawn with the hair, in its unit
+    #[arg(long, value_name = "FILE.obj")]
+    pub(crate) mesh: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Simulate {
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// The .tfx file to write; a folder (ending in /) where there are several grooms
+    #[arg(long, value_name = "POSE.tfx")]
+    pub(crate) out: PathBuf,
+    /// Write follow strands too
+    #[arg(long)]
+    pub(crate) all: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Motion {
+    /// It does not
+    Still,
+    /// It is shaken
+    Shake,
+    /// It turns to one side and to the other
+    Turn,
+    /// It goes along with steps
+    Walk,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BackendName {
+    /// Vulkan, Metal or Direct3D 12 through wgpu
+    Wgpu,
+}
+
+/// `N` finite numbers between commas.
+pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse::<f32>()).collect();
+    let numbers = numbers.map_err(|error| format!("{error}: {N} numbers between commas are needed"))?;
+    if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
+        return Err(format!("{bad} is not finite"));
+    }
+    let count = numbers.len();
+    numbers.try_into().map_err(|_| format!("{N} numbers between commas are needed, not {count}"))
+}
+
+fn vector(text: &str) -> Result<Vec3, String> {
+    numbers(text).map(Vec3::from_array)
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once('x').ok_or("WIDTHxHEIGHT is needed, such as 1280x720")?;
+    let edge = |text: &str| match text.parse() {
+        Ok(edge @ 1..=16384) => Ok(edge),
+        Ok(edge) => Err(format!("{edge} is not between 1 and 16384")),
+        Err(error) => Err(format!("{text}: {error}")),
+    };
+    Ok([edge(width)?, edge(height)?])
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(fps) if (1.0..=10_000.0).contains(&fps) => Ok(fps),
+        Ok(fps) => Err(format!("{fps} is not between 1 and 10000")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn odd_values_are_refused_in_words() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        assert!(size("640").unwrap_err().contains("1280x720"));
+        assert!(size("0x480").unwrap_err().contains("between 1 and 16384"));
+        assert_eq!(vector("1, -2,3.5"), Ok(Vec3::new(1.0, -2.0, 3.5)));
+        assert!(vector("1,2").unwrap_err().contains("not 2"));
+        assert!(vector("1,2,inf").unwrap_err().contains("not finite"));
+        assert!(fps("0").unwrap_err().contains("between"));
+    }
+}

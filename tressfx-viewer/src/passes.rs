@@ -1,0 +1,45 @@
+//! The passes of a frame as a table: `--print-passes`.
+
+use comfy_table::{Table, presets};
+use tressfx_core::backend::Kernel;
+use tressfx_core::pass::{Command, PassList};
+use tressfx_core::shader::SlotKind;
+
+/// One row a compute pass or draw, in the order in which they run.
+pub(crate) fn table(list: &PassList) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN);
+    table.set_header(["pass", "features", "bindings", "size"]);
+    for command in &list.commands {
+        match command {
+            Command::Compute(pass) => {
+                let [x, y, z] = pass.grid.0;
+                let size = format!("{x} x {y} x {z} groups");
+                table.add_row(row(pass.kernel.label(), &pass.kernel, size));
+            }
+            Command::Raster(pass) => {
+                for draw in &pass.draws {
+                    let size = format!("{} vertices x {}", draw.vertices, draw.instances);
+                    table.add_row(row(pass.label, &draw.kernel, size));
+                }
+            }
+            _ => {}
+        }
+    }
+    table.to_string()
+}
+
+fn row(label: &str, kernel: &Kernel, size: String) -> [String; 4] {
+    let bindings: Vec<String> =
+        kernel.shader.slots.iter().map(|slot| format!("{} ({})", slot.name, access(slot.kind))).collect();
+    [label.to_owned(), kernel.shader.features.clone(), bindings.join(", "), size]
+}
+
+fn access(kind: SlotKind) -> &'static str {
+    match kind {
+        SlotKind::Uniform => "uniform",
+        SlotKind::Read => "read",
+        SlotKind::ReadWrite => "read-write",
+        SlotKind::Texture | SlotKind::DepthTexture => "texture",
+    }
+}

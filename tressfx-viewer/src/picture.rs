@@ -1,0 +1,176 @@
+//! From linear light on the GPU to files of pictures.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use half::f16;
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, Frame, Rgb, RgbImage, buffer::ConvertBuffer};
+
+/// Turns a read-back of `Rgba16F`, linear light, into a picture for a screen.
+pub(crate) fn developed(bytes: &[u8], size: [u32; 2]) -> RgbImage {
+    let channel = |texel: &[u8], index: usize| {
+        let half = [texel[2 * index], texel[2 * index + 1]];
+        encode(f16::from_le_bytes(half).to_f32())
+    };
+    let mut texels = bytes.chunks_exact(8);
+    RgbImage::from_fn(size[0], size[1], |_, _| {
+        let texel = texels.next().expect("a texture holds a texel for every pixel");
+        Rgb([0, 1, 2].map(|index| channel(texel, index)))
+    })
+}
+
+/// The sRGB transfer function (IEC 61966-2-1) in 8 bits. Light above 0.8 is rolled off towards white, so that highlights
+/// keep their shape.
+fn encode(linear: f32) -> u8 {
+    const KNEE: f32 = 0.8;
+    let light = linear.max(0.0);
+    let light = if light > KNEE { KNEE + (1.0 - KNEE) * (1.0 - (-(light - KNEE) / (1.0 - KNEE)).exp()) } else { light };
+    let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0 + 0.5) as u8
+}
+
+/// Where pictures go: `--out`.
+#[derive(Debug)]
+pub(crate) enum Output {
+    /// The last frame.
+    Still(PathBuf),
+    /// Every frame, `0000.png` and on.
+    Folder(PathBuf),
+    /// All frames in one file.
+    Animation(PathBuf, Kind, Vec<RgbImage>),
+}
+
+/// A format of animations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Gif,
+    Apng,
+}
+
+impl Output {
+    /// Tells by the ending what is wanted, and makes sure that it can be written before anything is computed.
+    pub(crate) fn new(path: &Path) -> Result<Self> {
+        let text = path.to_string_lossy();
+        if text.ends_with(['/', '\\']) || path.is_dir() {
+            std::fs::create_dir_all(path).with_context(|| text.to_string())?;
+            return Ok(Self::Folder(path.to_owned()));
+        }
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let output = match ending.as_deref() {
+            Some("png") => Self::Still(path.to_owned()),
+            Some("gif") => Self::Animation(path.to_owned(), Kind::Gif, Vec::new()),
+            Some("apng") => Self::Animation(path.to_owned(), Kind::Apng, Vec::new()),
+            _ => bail!("{text}: the ending chooses the format: .png, .gif, .apng, or / for a folder"),
+        };
+        create(path)?;
+        Ok(output)
+    }
+
+    /// Whether every frame is wanted, or only the last.
+    pub(crate) fn wants_every_frame(&self) -> bool {
+        !matches!(self, Self::Still(_))
+    }
+
+    /// Takes a frame that is wanted.
+    pub(crate) fn push(&mut self, frame: u32, picture: RgbImage) -> Result<()> {
+        let save = |path: &Path| picture.save(path).with_context(|| path.display().to_string());
+        match self {
+            Self::Still(path) => save(path),
+            Self::Folder(folder) => save(&folder.join(format!("{frame:04}.png"))),
+            Self::Animation(.., frames) => {
+                frames.push(picture);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes what has to be written in one piece.
+    pub(crate) fn finish(self, fps: f64) -> Result<()> {
+        let Self::Animation(path, kind, frames) = self else { return Ok(()) };
+        let write = match kind {
+            Kind::Gif => gif,
+            Kind::Apng => apng,
+        };
+        write(&path, &frames, fps).with_context(|| path.display().to_string())
+    }
+}
+
+fn create(path: &Path) -> Result<BufWriter<File>> {
+    Ok(BufWriter::new(File::create(path).with_context(|| path.display().to_string())?))
+}
+
+/// GIF knows hundredths of a second, and players slow down anything faster than 50 frames a second: frames are left out.
+fn gif(path: &Path, frames: &[RgbImage], fps: f64) -> Result<()> {
+    let every = (fps / 50.0).ceil().max(1.0) as usize;
+    let delay = Delay::from_numer_denom_ms((1000.0 * every as f64 / fps).round() as u32, 1);
+    let mut encoder = GifEncoder::new_with_speed(create(path)?, 10);
+    encoder.set_repeat(Repeat::Infinite)?;
+    let frames = frames.iter().step_by(every).map(|frame| Frame::from_parts(frame.convert(), 0, 0, delay));
+    Ok(encoder.encode_frames(frames)?)
+}
+
+fn apng(path: &Path, frames: &[RgbImage], fps: f64) -> Result<()> {
+    let Some(first) = frames.first() else { return Ok(()) };
+    let mut encoder = png::Encoder::new(create(path)?, first.width(), first.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_animated(u32::try_from(frames.len())?, 0)?;
+    let (numerator, denominator) = frame_delay(fps);
+    encoder.set_frame_delay(numerator, denominator)?;
+    let mut writer = encoder.write_header()?;
+    for frame in frames {
+        writer.write_image_data(frame)?;
+    }
+    Ok(writer.finish()?)
+}
+
+/// Seconds of a frame as the fraction of two 16-bit numbers that APNG asks for, as finely as they allow.
+fn frame_delay(fps: f64) -> (u16, u16) {
+    let scale = [1000.0, 100.0, 10.0, 1.0].into_iter().find(|scale| scale * fps <= 65_535.0).unwrap_or(1.0);
+    (scale as u16, (scale * fps).round() as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_transfer_function_keeps_its_ends_and_its_order() {
+        assert_eq!(encode(0.0), 0);
+        assert_eq!(encode(-1.0), 0);
+        assert_eq!(encode(f32::NAN), 0);
+        assert_eq!(encode(0.5), 188, "sRGB of half the light");
+        assert_eq!(encode(1e6), 255);
+        let steps: Vec<u8> = (0..1000).map(|i| encode(i as f32 * 0.004)).collect();
+        assert!(steps.is_sorted());
+    }
+
+    #[test]
+    fn rows_and_channels_come_out_in_order() {
+        let texels: Vec<u8> = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]
+            .concat()
+            .into_iter()
+            .flat_map(|v| f16::from_f32(v).to_le_bytes())
+            .collect();
+        let picture = developed(&texels, [1, 2]);
+        assert!(picture[(0, 0)][0] > 230 && picture[(0, 0)][1] == 0);
+        assert!(picture[(0, 1)][1] > 230 && picture[(0, 1)][0] == 0);
+    }
+
+    #[test]
+    fn a_frame_of_an_animation_lasts_as_long_as_it_should() {
+        for fps in [1.0, 23.976, 60.0, 144.0, 10_000.0] {
+            let (numerator, denominator) = frame_delay(fps);
+            assert!((f64::from(denominator) / f64::from(numerator) - fps).abs() < 1e-3 * fps, "{fps}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_ending_is_refused_before_anything_is_computed() {
+        let error = Output::new(Path::new("picture.bmp")).unwrap_err();
+        assert!(error.to_string().contains(".png"), "{error}");
+    }
+}

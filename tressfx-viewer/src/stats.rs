@@ -1,0 +1,112 @@
+//! Figures about a run: `--stats`.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use tressfx_core::backend::Timing;
+
+/// The whole file. The keys are stable.
+#[derive(Debug, Serialize)]
+pub(crate) struct Stats {
+    pub(crate) groom: GroomStats,
+    pub(crate) backend: &'static str,
+    pub(crate) adapter: String,
+    pub(crate) frames: u32,
+    pub(crate) passes: Vec<PassStats>,
+    pub(crate) sim: SimStats,
+    pub(crate) render: RenderStats,
+}
+
+/// What was simulated.
+#[derive(Debug, Serialize)]
+pub(crate) struct GroomStats {
+    /// Guides and follow strands.
+    pub(crate) strands: u64,
+    pub(crate) vertices: u64,
+}
+
+/// GPU time of the passes of one label, over all times that it ran.
+#[derive(Debug, PartialEq, Serialize)]
+pub(crate) struct PassStats {
+    pub(crate) label: &'static str,
+    pub(crate) median_ms: f64,
+    pub(crate) min_ms: f64,
+    pub(crate) runs: usize,
+}
+
+/// How well lengths were kept, at the end of the run.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct SimStats {
+    /// Of `|length / rest length - 1|` over all edges longer than 1e-6 of their strand.
+    pub(crate) max_edge_error: f64,
+    pub(crate) rms_edge_error: f64,
+    /// Positions that are not finite, and strands that were reset because they had become so.
+    pub(crate) non_finite: u64,
+    /// How often the whole groom was put back into its rest pose.
+    pub(crate) resets: u64,
+}
+
+/// What the last frame drew.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(crate) struct RenderStats {
+    /// That hair made, dropped ones too.
+    pub(crate) fragments: u64,
+    /// That found no place in the node pool.
+    pub(crate) dropped: u64,
+    pub(crate) pixels_with_hair: u64,
+    pub(crate) peak_gpu_bytes: u64,
+}
+
+impl Stats {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
+        let text = serde_json::to_string_pretty(self)?;
+        std::fs::write(path, text + "\n").with_context(|| path.display().to_string())
+    }
+}
+
+/// Collects the times of passes over many frames.
+#[derive(Debug, Default)]
+pub(crate) struct PassTimes {
+    /// In the order in which the labels first ran.
+    passes: Vec<(&'static str, Vec<f64>)>,
+}
+
+impl PassTimes {
+    pub(crate) fn add(&mut self, timings: &[Timing]) {
+        for timing in timings {
+            let milliseconds = timing.nanoseconds * 1e-6;
+            match self.passes.iter_mut().find(|(label, _)| *label == timing.label) {
+                Some((_, times)) => times.push(milliseconds),
+                None => self.passes.push((timing.label, vec![milliseconds])),
+            }
+        }
+    }
+
+    pub(crate) fn summary(&self) -> Vec<PassStats> {
+        let summarise = |(label, times): &(&'static str, Vec<f64>)| {
+            let mut times = times.clone();
+            times.sort_by(f64::total_cmp);
+            PassStats { label, median_ms: times[times.len() / 2], min_ms: times[0], runs: times.len() }
+        };
+        self.passes.iter().map(summarise).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_summed_up_by_label_in_the_order_of_the_frame() {
+        let mut times = PassTimes::default();
+        let timing = |label, milliseconds: f64| Timing { label, nanoseconds: milliseconds * 1e6 };
+        times.add(&[timing("b", 3.0), timing("a", 1.0)]);
+        times.add(&[timing("b", 1.0), timing("b", 2.0)]);
+        let expected = [
+            PassStats { label: "b", median_ms: 2.0, min_ms: 1.0, runs: 3 },
+            PassStats { label: "a", median_ms: 1.0, min_ms: 1.0, runs: 1 },
+        ];
+        assert_eq!(times.summary(), expected);
+    }
+}

@@ -1,0 +1,92 @@
+//! The chores themselves.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::driver;
+
+/// Built-in grooms that the demo renders, and where the picture goes.
+const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
+
+/// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
+const PICTURES: [(&str, &[&str]); 5] = [
+    ("long.png", &["builtin:long", "--motion", "turn", "--frames", "90"]),
+    ("straight.png", &["builtin:straight", "--frames", "60"]),
+    ("wavy.png", &["builtin:wavy", "--frames", "60"]),
+    ("curly.png", &["builtin:curly", "--frames", "60"]),
+    ("fur.png", &["builtin:fur", "--wind", "3,0,0", "--frames", "60"]),
+];
+
+/// Runs a command to its end.
+pub(crate) fn run(command: &mut Command) -> Result<(), String> {
+    let shown = format!("{command:?}").replace('"', "");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{shown}: {status}")),
+        Err(error) => Err(format!("{shown}: {error}")),
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").to_owned()
+}
+
+fn cargo(words: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.current_dir(root()).args(words);
+    command
+}
+
+fn step(words: &[&str]) -> Result<(), String> {
+    println!("cargo {}", words.join(" "));
+    run(&mut cargo(words))
+}
+
+/// Builds the program `tressfx` and says where it is.
+fn tressfx(profile: &str) -> Result<PathBuf, String> {
+    let flags: &[&str] = if profile == "release" { &["--release"] } else { &[] };
+    step(&[&["build", "--package", "tressfx-viewer"], flags].concat())?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    Ok(target.join(profile).join(format!("tressfx{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Renders the built-in grooms.
+pub(crate) fn demo() -> Result<(), String> {
+    let tressfx = tressfx("release")?;
+    driver::ensure(&tressfx)?;
+    let folder = root().join("out").join("demo");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for (groom, picture) in DEMO {
+        let picture = folder.join(picture);
+        println!("tressfx render {groom} --frames 60 --motion turn --out {}", picture.display());
+        run(Command::new(&tressfx)
+            .args(["render", groom, "--frames", "60", "--motion", "turn", "--out"])
+            .arg(picture))?;
+    }
+    println!("The pictures are in {}", folder.display());
+    Ok(())
+}
+
+/// Makes the pictures of the documentation anew.
+pub(crate) fn docs() -> Result<(), String> {
+    let tressfx = tressfx("release")?;
+    driver::ensure(&tressfx)?;
+    let folder = root().join("docs").join("pictures");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for (picture, words) in PICTURES {
+        println!("tressfx render {} --size 960x540 --out docs/pictures/{picture}", words.join(" "));
+        let mut command = Command::new(&tressfx);
+        run(command.arg("render").args(words).args(["--size", "960x540", "--out"]).arg(folder.join(picture)))?;
+    }
+    Ok(())
+}
+
+/// Everything that a change must pass.
+pub(crate) fn test() -> Result<(), String> {
+    step(&["fmt", "--all", "--check"])?;
+    step(&["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"])?;
+    driver::ensure(&tressfx("debug")?)?;
+    step(&["test", "--workspace", "--quiet"])?;
+    println!("cargo doc --workspace --no-deps");
+    run(cargo(&["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "--deny warnings"))
+}
