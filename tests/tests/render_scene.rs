@@ -7,7 +7,7 @@ use tressfx_core::mesh::Mesh;
 use tressfx_render::{Material, Surface, reference};
 
 fn material() -> Material {
-    Material { fibre_radius: 0.005, opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
 
 /// A square across the line of sight, with its left edge at `left`.
@@ -48,7 +48,8 @@ fn depth_is_tested_as_in_f64() {
         let empty = stage.scene(&[(&mesh, Surface::default())], &[]).pixels();
         let scene = |[x, y]: [u32; 2]| depth[(y * 96 + x) as usize];
         let hair = reference::exact(&stage.frame(), &[groom.reference()], &scene);
-        let expected: Vec<DVec4> = hair.iter().zip(&empty).map(|(hair, below)| *hair + *below * (1.0 - hair.w)).collect();
+        let expected: Vec<DVec4> =
+            hair.iter().zip(&empty).map(|(hair, below)| *hair + *below * (1.0 - hair.w)).collect();
         let difference = picture.difference(&expected);
         eprintln!("{order:?}: {difference:?}");
         assert!(difference.psnr > 60.0, "{order:?}: {difference:?}");
@@ -89,7 +90,7 @@ fn a_strand_that_passes_behind_the_eye_is_cut_at_the_near_plane() {
     let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
     let strand = |x: f32, y: f32| vec![Vec3::new(x, y, -2.0), Vec3::new(0.4 * x, 0.5 * y, 2.0), Vec3::new(-x, y, 6.0)];
     let strands: Vec<_> = (0..40).map(|i| strand(0.5 - 0.025 * i as f32, 0.3 - 0.013 * i as f32)).collect();
-    let groom = Groom::new(&strands, Material { fibre_radius: 0.002, ..material() });
+    let groom = Groom::new(&strands, Material { fibre_radius: Some(0.002), ..material() });
     let far = stage.view.depth.far();
     let exact = reference::exact(&stage.frame(), &[groom.reference()], &|_| far);
     let picture = stage.hair(&[&groom]);
