@@ -181,9 +181,8 @@ impl Stage {
         change(&mut desc, &mut view);
         desc.size = view.size;
         let renderer = HairRenderer::new(&mut backend, &desc).expect("a renderer");
-        let mut texture = |label, format| {
-            backend.create_texture(&TextureDesc { label, size: view.size, format }).expect("a texture")
-        };
+        let mut texture =
+            |label, format| backend.create_texture(&TextureDesc { label, size: view.size, format }).expect("a texture");
         let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
         Some(Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth })
     }

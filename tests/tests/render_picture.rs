@@ -128,6 +128,10 @@ fn a_pose_moves_the_hair_with_its_light() {
     let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
     let difference = stage.hair(&[&groom]).difference(&exact);
     assert!(difference.max < 0.004, "{difference:?}");
-    let still = reference::exact(&stage.frame(), &[Groom { pose: Pose::IDENTITY, ..groom.clone() }.reference()], &nothing(&stage));
+    let still = reference::exact(
+        &stage.frame(),
+        &[Groom { pose: Pose::IDENTITY, ..groom.clone() }.reference()],
+        &nothing(&stage),
+    );
     assert!(Difference::between(&exact, &still).psnr < 30.0, "the pose is seen");
 }

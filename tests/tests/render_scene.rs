@@ -48,7 +48,8 @@ fn depth_is_tested_as_in_f64() {
         let empty = stage.scene(&[(&mesh, Surface::default())], &[]).pixels();
         let scene = |[x, y]: [u32; 2]| depth[(y * 96 + x) as usize];
         let hair = reference::exact(&stage.frame(), &[groom.reference()], &scene);
-        let expected: Vec<DVec4> = hair.iter().zip(&empty).map(|(hair, below)| *hair + *below * (1.0 - hair.w)).collect();
+        let expected: Vec<DVec4> =
+            hair.iter().zip(&empty).map(|(hair, below)| *hair + *below * (1.0 - hair.w)).collect();
         let difference = picture.difference(&expected);
         eprintln!("{order:?}: {difference:?}");
         assert!(difference.psnr > 60.0, "{order:?}: {difference:?}");

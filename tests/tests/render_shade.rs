@@ -57,8 +57,7 @@ fn a_fibre_along_the_light_or_the_view_is_finite() {
     stage.lights.lights = vec![Light::directional(Vec3::Z, Vec3::ONE), Light::directional(Vec3::Y, Vec3::ONE)];
     // Towards the light, towards the eye, and both at a length that is not quite 1 in f32.
     let directions = [Vec3::Y, Vec3::Z, Vec3::new(0.0, 0.6, 0.8), Vec3::splat(1.0)];
-    let strands: Vec<Vec<Vec3>> =
-        directions.iter().map(|&d| (0..4).map(|i| d * 0.1 * i as f32).collect()).collect();
+    let strands: Vec<Vec<Vec3>> = directions.iter().map(|&d| (0..4).map(|i| d * 0.1 * i as f32).collect()).collect();
     let mut groom = Groom::new(&strands, Material::default());
     groom.tangents.iter_mut().for_each(|tangent| *tangent = tangent.map(|x| x * 1.000_000_2));
     for color in shaded(&mut stage, &groom) {
