@@ -39,7 +39,7 @@ impl Camera {
 
     /// The view of a scene with these bounds.
     pub(crate) fn view(self, bounds: &Bounds, size: [u32; 2]) -> View {
-        let around = View::around(bounds.center(), bounds.radius(), size);
+        let around = View::around(bounds.min, bounds.max, size);
         let Self::Given { eye, target, fov } = self else { return around };
         let reach = eye.distance(bounds.center()) + bounds.radius();
         View { eye, target, fov, near: reach * 1e-3, far: reach * 10.0, ..around }

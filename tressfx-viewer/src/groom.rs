@@ -1,11 +1,12 @@
 //! Grooms that were named on the command line.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
+use glam::Vec3;
 use tressfx_core::asset::{self, HairAsset};
 use tressfx_core::builtin::Builtin;
 use tressfx_core::mesh::Mesh;
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{Bounds, StrandOptions, Strands};
+use tressfx_core::strands::{self, Bounds, StrandOptions, Strands};
 
 const BUILTIN: &str = "builtin:";
 
@@ -32,24 +33,18 @@ pub(crate) struct Groom {
 }
 
 impl Groom {
-    /// Reads grooms; `follows` overrides what the files say.
+    /// Reads grooms; `follows` overrides what the files say. The sections share one unit, found from the size of the whole.
     pub(crate) fn load(names: &[String], follows: Option<u32>) -> Result<Self> {
-        let mut groom = Self { sections: Vec::new(), capsules: Vec::new(), mesh: None };
-        let options = StrandOptions { follows, ..StrandOptions::default() };
+        let assets = names.iter().map(|name| asset(name)).collect::<Result<Vec<_>>>()?;
+        let points = assets.iter().flat_map(|asset| asset.placed_points().into_owned());
+        let metres_per_unit = Some(strands::metres_per_unit(&Bounds::of(points.map(Vec3::from))));
+        let options = StrandOptions { follows, metres_per_unit, ..StrandOptions::default() };
+        let sections = assets.iter().map(|asset| Strands::new(asset, &options)).collect::<Result<_, _>>()?;
+        let mut groom = Self { sections, capsules: Vec::new(), mesh: None };
         for name in names {
-            groom.sections.push(Strands::new(&asset(name)?, &options)?);
             if let Some(builtin) = builtin(name)? {
                 groom.grow_on(&builtin);
             }
-        }
-        let unit = groom.metres_per_unit();
-        if let Some(other) = groom.sections.iter().find(|section| section.metres_per_unit != unit) {
-            bail!(
-                "{} is in units of {unit} m and {} in units of {} m: the sections of a groom share one unit",
-                groom.sections[0].name,
-                other.name,
-                other.metres_per_unit
-            );
         }
         Ok(groom)
     }
@@ -60,10 +55,6 @@ impl Groom {
             self.mesh = Some(builtin.mesh());
             self.capsules = builtin.capsules();
         }
-    }
-
-    pub(crate) fn metres_per_unit(&self) -> f32 {
-        self.sections[0].metres_per_unit
     }
 
     /// The box around all sections at rest.

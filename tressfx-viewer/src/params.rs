@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
+use tressfx_core::shape::Capsule;
 use tressfx_render::Material;
 use tressfx_sim::{ClockParams, SimParams, Wind};
 
@@ -19,6 +20,8 @@ pub(crate) struct Params {
     pub(crate) material: Material,
     /// The wind; `--wind` overrides its velocity.
     pub(crate) wind: Option<Wind>,
+    /// What hair collides with, beside what a built-in groom brings: in the space and the unit of the groom.
+    pub(crate) capsule: Vec<Capsule>,
     /// What is different in single sections, in the order of the grooms.
     section: Vec<SectionParams>,
 }
@@ -45,6 +48,9 @@ impl Params {
             bail!("{} tables `section` for {sections} grooms", params.section.len());
         }
         params.clock.validate()?;
+        if let Some(index) = params.capsule.iter().position(|capsule| !capsule.is_sound()) {
+            bail!("capsule {index}: a number is not finite, or a radius is negative");
+        }
         if let Some(wind) = &params.wind {
             wind.validate()?;
         }
@@ -85,6 +91,9 @@ mod tests {
         assert!(message("[sim]\ndamping = 5.0").contains("damping = 5 must be from 0 to 1"));
         assert!(message("[material]\nopacity = 2.0").contains("opacity is 2"));
         assert!(message("[clock]\nsub_step = 0.0").contains("sub_step"));
+        assert!(
+            message("[[capsule]]\na = [0, 0, 0]\nb = [0, 1, 0]\nradius_a = -1\nradius_b = 1").contains("capsule 0")
+        );
         assert!(message("[[section]]\n[[section]]").contains("2 tables `section` for 1 grooms"));
     }
 }

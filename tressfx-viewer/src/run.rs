@@ -43,7 +43,8 @@ impl Run {
             .enumerate()
             .map(|(index, strands)| SectionDesc { strands, params: params.sim(index).clone() })
             .collect();
-        let mut sim = HairSim::new(&mut backend, &sections, &groom.capsules)?;
+        let capsules = [&groom.capsules[..], &params.capsule].concat();
+        let mut sim = HairSim::new(&mut backend, &sections, &capsules)?;
         sim.set_clock_params(params.clock)?;
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
