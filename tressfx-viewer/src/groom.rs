@@ -62,6 +62,11 @@ impl Groom {
         Bounds::of(self.sections.iter().flat_map(|section| [section.bounds.min, section.bounds.max]))
     }
 
+    /// Positions of the guides of all sections at rest.
+    pub(crate) fn rest(&self) -> Vec<Vec3> {
+        self.sections.iter().flat_map(|section| section.rest.iter().map(|vertex| vertex.truncate())).collect()
+    }
+
     /// Guides and follow strands of all sections.
     pub(crate) fn strands(&self) -> u64 {
         self.sections.iter().map(|section| u64::from(section.strand_count())).sum()
