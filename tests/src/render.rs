@@ -42,7 +42,6 @@ impl Groom {
             let (before, after) = (strand[vertex.saturating_sub(1)], strand[(vertex + 1).min(vertices - 1)]);
             (after - before).normalize_or(Vec3::Y)
         };
-        let center = strands.iter().map(|strand| strand[0]).sum::<Vec3>() / strands.len().max(1) as f32;
         let segments = strands.iter().flat_map(|strand| strand.windows(2));
         Self {
             shape,
@@ -51,7 +50,8 @@ impl Groom {
             thickness: order.map(|_| 1.0).collect(),
             info: StrandInfo {
                 metres_per_unit: 1.0,
-                root_center: center,
+                fitting_radius: 0.000_1,
+                openness: openness(strands.len() * vertices),
                 sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
             },
             material,
@@ -63,8 +63,8 @@ impl Groom {
     pub fn wavy(strands: u32, vertices: u32, seed: u32, material: Material) -> Self {
         let mut random = Random(seed);
         let mut strand = |_| {
-            let root = Vec3::new(random.next() - 0.5, 0.6, random.next() - 0.5);
-            let (phase, swing) = (random.next() * 6.3, 0.05 + 0.1 * random.next());
+            let root = Vec3::new(random.unit() - 0.5, 0.6, random.unit() - 0.5);
+            let (phase, swing) = (random.unit() * 6.3, 0.05 + 0.1 * random.unit());
             let point = |i: u32| {
                 let s = i as f32 / (vertices - 1) as f32;
                 root + Vec3::new((phase + 7.0 * s).sin() * swing, -1.2 * s, (phase + 5.0 * s).cos() * swing)
@@ -83,9 +83,17 @@ impl Groom {
             uniform: gpu::Section::new(self.shape, &self.info, &self.material, &self.pose),
             positions: &self.positions,
             tangents: &self.tangents,
+            openness: &self.info.openness,
             thickness: &self.thickness,
         }
     }
+}
+
+/// Some light from everywhere, differently for each vertex.
+fn openness(count: usize) -> Vec<[f32; 4]> {
+    let mut random = Random(77);
+    let mut value = || 0.6 * random.unit() - 0.3;
+    (0..count).map(|_| [value(), value(), value(), 0.6 + value()]).collect()
 }
 
 /// Numbers in [0, 1) that are the same everywhere.
@@ -94,7 +102,7 @@ pub struct Random(pub u32);
 
 impl Random {
     /// The next one (Marsaglia's xorshift over a Weyl sequence).
-    pub fn next(&mut self) -> f32 {
+    pub fn unit(&mut self) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9);
         let mut x = self.0 ^ (self.0 >> 15);
         x = x.wrapping_mul(0x85eb_ca6b);
@@ -203,7 +211,7 @@ impl Stage {
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
-        Section::new(&mut self.backend, buffers, groom.info.clone()).expect("a section")
+        Section::new(&mut self.backend, list, buffers, groom.info.clone()).expect("a section")
     }
 
     /// Hair over nothing.

@@ -14,13 +14,14 @@ fn flat(stage: &mut Stage, material: Material) -> Material {
         tip_color: [0.25, 0.5, 0.75],
         variation: 0.0,
         root_shade: 0.0,
+        form: 0.0,
         tip_width: 1.0,
         ..material
     }
 }
 
 fn opaque(radius: f32) -> Material {
-    Material { fibre_radius: radius, opacity: 1.0, tip_opacity: 1.0, ..Material::default() }
+    Material { fibre_radius: Some(radius), opacity: 1.0, tip_opacity: 1.0, ..Material::default() }
 }
 
 /// A straight strand through the middle of the picture at an angle to the horizontal, 1 unit long.

@@ -5,7 +5,7 @@ use tressfx_conformance::render::{Groom, Stage};
 use tressfx_render::Material;
 
 fn material() -> Material {
-    Material { fibre_radius: 0.005, opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
 
 fn strands(count: u32) -> Vec<Vec<Vec3>> {

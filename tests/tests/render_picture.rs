@@ -7,7 +7,7 @@ use tressfx_render::{Material, reference};
 
 /// Hair of about a third of a pixel on the test's screen, half of which is opaque.
 fn material() -> Material {
-    Material { fibre_radius: 0.005, opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
 
 fn nothing(stage: &Stage) -> impl Fn([u32; 2]) -> f32 + use<> {
@@ -85,7 +85,7 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
 #[test]
 fn the_supersampled_truth_is_near() {
     let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
-    let groom = Groom::wavy(200, 16, 5, Material { fibre_radius: 0.003, ..material() });
+    let groom = Groom::wavy(200, 16, 5, Material { fibre_radius: Some(0.003), ..material() });
     let truth = reference::supersampled(&stage.frame(), &[groom.reference()], 8);
     let difference = stage.hair(&[&groom]).difference(&truth);
     eprintln!("against 64 samples a pixel: {difference:?}");

@@ -11,7 +11,7 @@ use tressfx_core::view::{Pose, View};
 use tressfx_render::{HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, Targets};
 
 fn material() -> Material {
-    Material { fibre_radius: 0.005, opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn nothing_to_draw_makes_no_pass() {
         Targets { color: texture(&mut backend, Format::Rgba16F), depth: texture(&mut backend, Format::Depth32F) };
     let section = |backend: &mut NullBackend, groom: &Groom| {
         let buffers = StrandBuffers::new(backend, groom.shape).unwrap();
-        Section::new(backend, buffers, groom.info.clone()).unwrap()
+        Section::new(backend, &mut PassList::new(), buffers, groom.info.clone()).unwrap()
     };
     let (empty, full) = (Groom::new(&[], material()), Groom::wavy(3, 4, 6, material()));
     let (none, some) = (section(&mut backend, &empty), section(&mut backend, &full));

@@ -7,7 +7,7 @@ use tressfx_core::mesh::Mesh;
 use tressfx_render::{Material, Surface, reference};
 
 fn material() -> Material {
-    Material { fibre_radius: 0.005, opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
 
 /// A square across the line of sight, with its left edge at `left`.
@@ -90,7 +90,7 @@ fn a_strand_that_passes_behind_the_eye_is_cut_at_the_near_plane() {
     let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
     let strand = |x: f32, y: f32| vec![Vec3::new(x, y, -2.0), Vec3::new(0.4 * x, 0.5 * y, 2.0), Vec3::new(-x, y, 6.0)];
     let strands: Vec<_> = (0..40).map(|i| strand(0.5 - 0.025 * i as f32, 0.3 - 0.013 * i as f32)).collect();
-    let groom = Groom::new(&strands, Material { fibre_radius: 0.002, ..material() });
+    let groom = Groom::new(&strands, Material { fibre_radius: Some(0.002), ..material() });
     let far = stage.view.depth.far();
     let exact = reference::exact(&stage.frame(), &[groom.reference()], &|_| far);
     let picture = stage.hair(&[&groom]);

@@ -3,7 +3,7 @@
 
 import package::frame::{Frame, ambient, towards};
 import package::grid::{GROUP, thread_index};
-import package::lighting::{Fibre, form, scatter};
+import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
 import package::section::{Section, strand_random};
 
@@ -11,8 +11,9 @@ import package::section::{Section, strand_random};
 @group(0) @binding(1) var<uniform> section: Section;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> tangents: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> openness: array<vec4<f32>>;
 // Colour and opacity as four half floats.
-@group(0) @binding(4) var<storage, read_write> colors: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read_write> colors: array<vec2<u32>>;
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
@@ -25,21 +26,24 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-20));
 }
 
-// The side of the hair that the fibre lies on: away from the middle of the roots, the way that the strand grows out of the
-// skin, and across the strand.
-fn outwards(point: vec3<f32>, tangent: vec3<f32>, strand: u32) -> vec3<f32> {
-    let growth = posed(strand + section.strands) - posed(strand);
-    let out = unit(point - (section.pose * vec4(section.center.xyz, 1.0)).xyz) + unit(growth);
-    return unit(out - tangent * dot(out, tangent));
+// Where light comes from through the groom: a vector and a constant, from the frame of the strand. See `openness.rs`.
+fn open_towards(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
+    let local = openness[i / section.strands * section.guides + strand % section.guides];
+    let growth = unit(posed(strand + section.strands) - posed(strand));
+    // Where a strand grows straight on, there is no direction across: it fades.
+    let side = growth - tangent * dot(growth, tangent);
+    let across = side * min(inverseSqrt(max(dot(side, side), 1e-20)), 5.0);
+    return vec4(local.x * tangent + local.y * across + local.z * cross(tangent, across), local.w);
 }
 
-fn lit(point: vec3<f32>, normal: vec3<f32>, fibre: Fibre) -> vec3<f32> {
+fn lit(point: vec3<f32>, fibre: Fibre, open: vec4<f32>) -> vec3<f32> {
     let eye = unit(frame.eye.xyz - point);
-    var sum = ambient(frame.sky, frame.ground, normal) * fibre.albedo;
+    let around = mix(1.0, saturate(open.w), section.form);
+    var sum = around * ambient(frame.sky, frame.ground, unit(open.xyz)) * fibre.albedo;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = towards(frame.lights[i], point);
-        let arriving = frame.lights[i].color.rgb * (light.w * form(section.form, normal, light.xyz));
-        sum += arriving * scatter(fibre, eye, light.xyz);
+        let arriving = light.w * mix(1.0, saturate(open.w + dot(open.xyz, light.xyz)), section.form);
+        sum += frame.lights[i].color.rgb * arriving * scatter(fibre, eye, light.xyz);
     }
     return sum;
 }
@@ -59,9 +63,9 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
     let paint = mix(section.base, section.tip, along);
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
-    let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
+    let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    var color = clamp(open * lit(point, outwards(point, tangent, strand), fibre), vec3(0.0), vec3(BRIGHTEST));
+    var color = clamp(skin * lit(point, fibre, open_towards(i, strand, tangent)), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);
     }

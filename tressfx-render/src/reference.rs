@@ -27,6 +27,8 @@ pub struct Section<'a> {
     pub positions: &'a [[f32; 4]],
     /// As [`StrandBuffers::tangents`](tressfx_core::strand_buffers::StrandBuffers::tangents).
     pub tangents: &'a [[f32; 4]],
+    /// As [`StrandInfo::openness`](crate::StrandInfo::openness).
+    pub openness: &'a [[f32; 4]],
     /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
     pub thickness: &'a [f32],
 }

@@ -136,7 +136,7 @@ impl HairRenderer {
         self.pool.grow(backend, (f64::from(counters.fragments) * HEADROOM) as u64)
     }
 
-    /// Draws sections, sorted against each other. Where there is no strand, there is no pass.
+    /// Draws sections, each once, sorted against each other. Where there is no strand, there is no pass.
     ///
     /// # Panics
     /// If the view has another size than the renderer, or there are more than [`MAX_LIGHTS`](crate::MAX_LIGHTS) lights.

@@ -44,7 +44,7 @@ impl Studio {
             .collect::<Result<_, _>>()?;
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
-            let section = Section::new(backend, *buffers, StrandInfo::new(strands))?;
+            let section = Section::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
             sections.push((section, *run.params.material(index)));
         }
         let mut renderer = HairRenderer::new(backend, &RenderDesc { k: args.k, ..RenderDesc::new(args.size, TARGET) })?;

@@ -2,8 +2,6 @@
 
 struct Section {
     pose: mat4x4<f32>,
-    // Middle of the roots, in the space of the positions.
-    center: vec4<f32>,
     // Colour and opacity at the root and at the tip.
     base: vec4<f32>,
     tip: vec4<f32>,

@@ -20,10 +20,10 @@ pub fn shade(frame: &Frame, section: &Section, strand: u32, vertex: u32) -> DVec
         primary: pair(of.primary),
         secondary: pair(of.secondary),
     };
-    let open = 1.0 - f64::from(of.root_shade) * (1.0 - smoothstep(along / f64::from(of.root_extent)));
+    let skin = 1.0 - f64::from(of.root_shade) * (1.0 - smoothstep(along / f64::from(of.root_extent)));
     let point = section.posed(index);
-    let normal = outwards(section, point, fibre.tangent, strand);
-    let color = open * lit(frame, f64::from(of.form), point, normal, &fibre);
+    let open = open_towards(section, strand, vertex, fibre.tangent);
+    let color = skin * lit(frame, f64::from(of.form), point, &fibre, open);
     color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
 }
 
@@ -36,22 +36,27 @@ struct Fibre {
     secondary: DVec2,
 }
 
-fn outwards(section: &Section, point: DVec3, tangent: DVec3, strand: u32) -> DVec3 {
-    let center = matrix(&section.uniform.pose).transform_point3(xyz(&section.uniform.center));
+/// The light that comes through the groom, as a vector and a constant.
+fn open_towards(section: &Section, strand: u32, vertex: u32, tangent: DVec3) -> DVec4 {
+    let of = &section.uniform;
+    let local = section.openness[(vertex * of.guides + strand % of.guides) as usize].map(f64::from);
     let growth = section.posed(section.index(strand, 1)) - section.posed(section.index(strand, 0));
-    let out = (point - center).normalize_or_zero() + growth.normalize_or_zero();
-    (out - tangent * out.dot(tangent)).normalize_or_zero()
+    let growth = growth.normalize_or_zero();
+    let side = growth - tangent * growth.dot(tangent);
+    let across = side * side.length().recip().min(5.0);
+    (local[0] * tangent + local[1] * across + local[2] * tangent.cross(across)).extend(local[3])
 }
 
-fn lit(frame: &Frame, form: f64, point: DVec3, normal: DVec3, fibre: &Fibre) -> DVec3 {
+fn lit(frame: &Frame, form: f64, point: DVec3, fibre: &Fibre, open: DVec4) -> DVec3 {
     let eye = (xyz(&frame.eye) - point).normalize_or_zero();
-    let ambient = xyz(&frame.ground).lerp(xyz(&frame.sky), 0.5 + 0.5 * normal.y) * fibre.albedo;
+    let seen = |open: f64| 1.0 + form * (open.clamp(0.0, 1.0) - 1.0);
+    let above = 0.5 + 0.5 * open.truncate().normalize_or_zero().y;
+    let ambient = seen(open.w) * xyz(&frame.ground).lerp(xyz(&frame.sky), above) * fibre.albedo;
     let lights = &frame.lights[..frame.light_count as usize];
     lights.iter().fold(ambient, |sum, light| {
         let (towards, arriving) = towards(light, point);
-        let wrapped = ((normal.dot(towards) + 0.4) / 1.4).clamp(0.0, 1.0);
-        let facing = 1.0 + form * (wrapped - 1.0);
-        sum + xyz(&light.color) * arriving * facing * scatter(fibre, eye, towards)
+        let arriving = arriving * seen(open.w + open.truncate().dot(towards));
+        sum + xyz(&light.color) * arriving * scatter(fibre, eye, towards)
     })
 }
 
