@@ -111,7 +111,7 @@ fn a_new_size_draws_as_a_new_renderer() {
 #[test]
 fn nothing_to_draw_makes_no_pass() {
     let mut backend = NullBackend::default();
-    let view = View { depth: DepthOrder::Standard, ..View::around(Vec3::splat(-0.6), Vec3::splat(0.6), [64, 64]) };
+    let view = View { depth: DepthOrder::Standard, ..View::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 64]) };
     let renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
     let texture = |backend: &mut NullBackend, format| {
         let desc = tressfx_core::backend::TextureDesc { label: "test", size: [64, 64], format };

@@ -4,6 +4,7 @@ use glam::camera::rh;
 use glam::{Mat4, Quat, Vec2, Vec3};
 
 use crate::backend::DepthOrder;
+use crate::strands::Bounds;
 
 /// A camera, right-handed, y up, looking along -z; clip space as in WebGPU: y up, z from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,20 +52,22 @@ impl View {
         2.0 * (self.fov * 0.5).tan() / self.size[1].max(1) as f32
     }
 
-    /// A view from the front, slightly from above and from the side, in which a box fills most of the picture.
-    pub fn around(min: Vec3, max: Vec3, size: [u32; 2]) -> Self {
+    /// A view in which points fill most of the picture: slightly from above, from the front or, where they extend much
+    /// further from front to back than from side to side, from the side.
+    pub fn around(points: &[Vec3], size: [u32; 2]) -> Self {
         let fov = 30f32.to_radians();
-        let center = min * 0.5 + max * 0.5;
-        let radius = (max * 0.5 - min * 0.5).length().max(1e-6);
-        let direction = Vec3::new(0.35, 0.12, 1.0).normalize();
+        let bounds = Bounds::of(points.iter().copied());
+        let extent = bounds.max - bounds.min;
+        let (center, radius) = (bounds.center(), bounds.radius().max(1e-6));
+        let is_deep = extent.z > 1.5 * extent.x;
+        let direction = if is_deep { Vec3::new(1.0, 0.12, 0.35) } else { Vec3::new(0.35, 0.12, 1.0) }.normalize();
         let aspect = size[0] as f32 / size[1].max(1) as f32;
         let half = Vec2::new(aspect, 1.0) * (fov * 0.5).tan() * Self::FILLED;
         let to_view = rh::view::look_to_mat4(Vec3::ZERO, -direction, Vec3::Y);
-        // Each corner must be so far away that it lies within the picture on both axes.
-        let corners = (0..8).map(|i| Vec3::select(glam::BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), max, min));
-        let distances = corners.map(|corner| {
-            let corner = to_view.transform_point3(corner - center);
-            corner.z + (corner.truncate().abs() / half).max_element()
+        // Each point must be so far away that it lies within the picture on both axes.
+        let distances = points.iter().map(|&point| {
+            let point = to_view.transform_point3(point - center);
+            point.z + (point.truncate().abs() / half).max_element()
         });
         let distance = distances.fold(radius * 0.5, f32::max);
         Self {
@@ -138,7 +141,7 @@ mod tests {
     #[test]
     fn near_and_far_map_to_the_ends_of_the_depth_range() {
         for depth in [DepthOrder::Standard, DepthOrder::Reverse] {
-            let view = View { depth, ..View::around(Vec3::NEG_ONE, Vec3::ONE, [640, 480]) };
+            let view = View { depth, ..View::around(&[Vec3::NEG_ONE, Vec3::ONE], [640, 480]) };
             let forward = (view.target - view.eye).normalize();
             let project = |distance: f32| view.view_projection().project_point3(view.eye + forward * distance).z;
             assert!((project(view.far) - depth.far()).abs() < 1e-4, "{depth:?}");
@@ -147,13 +150,12 @@ mod tests {
     }
 
     #[test]
-    fn a_box_fills_the_picture_and_stays_inside() {
-        for (min, max) in [(Vec3::NEG_ONE, Vec3::ONE), (Vec3::new(3.0, 0.0, 0.0), Vec3::new(3.1, 5.0, 0.2))] {
+    fn points_fill_the_picture_and_stay_inside() {
+        let ball = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        for points in [&ball[..], &[Vec3::ZERO, Vec3::Y * 5.0], &[Vec3::ZERO, Vec3::new(0.1, 1.0, 7.0)]] {
             for size in [[1280, 720], [200, 900]] {
-                let matrix = View::around(min, max, size).view_projection();
-                let corners = (0..8)
-                    .map(|i| Vec3::new([min.x, max.x][i & 1], [min.y, max.y][i >> 1 & 1], [min.z, max.z][i >> 2]));
-                let reach = corners.map(|corner| matrix.project_point3(corner).truncate().abs().max_element());
+                let matrix = View::around(points, size).view_projection();
+                let reach = points.iter().map(|&point| matrix.project_point3(point).truncate().abs().max_element());
                 let reach = reach.fold(0.0, f32::max);
                 assert!((reach - View::FILLED).abs() < 1e-3, "{reach}");
             }
