@@ -100,7 +100,8 @@ struct Stage {
 
 impl Stage {
     fn new(backend: &mut WgpuBackend, strands: &Strands, size: [u32; 2]) -> Result<Self, Failure> {
-        let view = View::around(strands.bounds.min, strands.bounds.max, size);
+        let points: Vec<Vec3> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
+        let view = View::around(&points, size);
         let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size, format });
         let targets = Targets { color: texture("color", Format::Rgba16F)?, depth: texture("depth", Format::Depth32F)? };
         let renderer = HairRenderer::new(backend, &RenderDesc::new(size, Format::Rgba16F))?;
