@@ -5,7 +5,7 @@
 //! same view at 480x270 against the picture in f64 with all fragments in order.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use glam::{DVec4, Vec3};
 use tressfx_backend_wgpu::WgpuBackend;
@@ -21,6 +21,9 @@ use tressfx_render::{
 };
 
 const FRAMES: usize = 100;
+
+/// The first frames grow the pool, and the GPU takes its time to raise its clocks.
+const WARM_UP: Duration = Duration::from_secs(1);
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -125,14 +128,16 @@ impl Stage {
     fn time(&mut self, backend: &mut WgpuBackend, section: &Section) -> Result<(Counters, Times), Failure> {
         let mut times = Times::new();
         let mut counters = Counters::default();
-        for frame in 0..FRAMES + 3 {
+        let (start, mut measured) = (Instant::now(), 0);
+        while measured < FRAMES {
+            let warm = start.elapsed() > WARM_UP;
             let mut list = self.record(section);
             let ticket = self.renderer.read_counters(&mut list);
             backend.run(&list)?;
             counters = Counters::from_bytes(&backend.read(ticket).ok_or("no counters")?);
             self.renderer.observe(backend, &counters)?;
-            // The first frames grow the pool and wake the GPU.
-            for (index, timing) in backend.timings().into_iter().enumerate().filter(|_| frame >= 3) {
+            measured += usize::from(warm);
+            for (index, timing) in backend.timings().into_iter().enumerate().filter(|_| warm) {
                 let runs = &mut times.entry(index).or_insert((timing.label, Vec::new())).1;
                 runs.push(Duration::from_nanos(timing.nanoseconds as u64));
             }
