@@ -33,7 +33,7 @@ pub struct Surface {
 impl Default for Surface {
     /// A tailor's dummy of dark clay: where hair is thin, it is seen between the strands, and no strand shades it.
     fn default() -> Self {
-        Self { color: Vec3::new(0.075, 0.062, 0.057), rim: 0.05, gloss: 0.06, exponent: 22.0, softness: 0.3 }
+        Self { color: Vec3::new(0.15, 0.108, 0.088), rim: 0.05, gloss: 0.06, exponent: 22.0, softness: 0.3 }
     }
 }
 
