@@ -1,6 +1,7 @@
 //! The suite that any TressFX backend must pass, and the tests across crates.
 
 pub mod render;
+pub mod sim;
 
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::Backend;

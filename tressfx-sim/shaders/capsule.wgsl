@@ -12,18 +12,20 @@ fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
     return vec4(capsule.a + t * axis, capsule.radius_a + t * (capsule.radius_b - capsule.radius_a));
 }
 
-/// Turns a vertex about its parent until it is on a sphere that it is inside of: its distance from the parent stays. In the
-/// plane of parent, vertex and centre that is a triangle of three known sides. Where the parent is so deep inside that no
+/// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
+/// plane of parent, centre and `heading` that is a triangle of three known sides. Where the parent is so deep inside that no
 /// turn is enough, the vertex ends straight outwards.
-fn turned_out(parent: vec3<f32>, vertex: vec3<f32>, length: f32, sphere: vec4<f32>) -> vec3<f32> {
+///
+/// `heading` is the way of the edge before anything moved. The way to where the vertex was would not do: in a strand that
+/// crosses the sphere nearly at right angles each vertex would multiply the errors of its parent.
+fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>) -> vec3<f32> {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
     let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
-    let reach = max(2.0 * distance * length, 1e-24);
-    let c = clamp((sphere.w * sphere.w - distance * distance - length * length) / reach, -1.0, 1.0);
-    let edge = vertex - parent;
-    let sideways = direction_or(edge - dot(edge, outwards) * outwards, across(outwards));
-    return parent + length * (c * outwards + sqrt(max(1.0 - c * c, 0.0)) * sideways);
+    let missing = (sphere.w - distance) * (sphere.w + distance) - length * length;
+    let c = clamp(missing / max(2.0 * distance * length, 1e-24), -1.0, 1.0);
+    let sideways = direction_or(heading - dot(heading, outwards) * outwards, across(outwards));
+    return parent + length * (c * outwards + sqrt(1.0 - c * c) * sideways);
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin

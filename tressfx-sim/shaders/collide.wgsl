@@ -22,11 +22,13 @@ const ROUNDS: u32 = 4u;
 struct Contact { point: vec3<f32>, touched: bool, normal: vec3<f32> }
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+           @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= GUIDES) { return; }
-    var parent = positions[strand].xyz;
+    // The parent before and after this kernel.
+    var old_parent = positions[strand].xyz;
+    var parent = old_parent;
     var moved = false;
     for (var i = 1u; i < VERTICES; i++) {
         let vertex = positions[i * STRANDS + strand];
@@ -34,7 +36,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         if (vertex.w > 0.0) {
             let length = rest_lengths[(i - 1u) * GUIDES + strand];
             if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
-            let contact = resolved(in_head(parent), in_head(point), length);
+            let heading = rotate_back(step.head_rotation, vertex.xyz - old_parent);
+            let contact = resolved(in_head(parent), in_head(point), length, heading);
             if (contact.touched) {
                 rub(i * GUIDES + strand, contact, in_head(point));
                 point = in_world(contact.point);
@@ -44,12 +47,13 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
             moved = false;
         }
         if (moved) { positions[i * STRANDS + strand] = vec4(point, vertex.w); }
+        old_parent = vertex.xyz;
         parent = point;
     }
 }
 
-/// Where a vertex is when it has left all capsules.
-fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32) -> Contact {
+/// Where a vertex is when it has left all capsules. `heading` is the way that its edge had.
+fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>) -> Contact {
     var contact = Contact(start, false, vec3(0.0));
     for (var round = 0u; round < ROUNDS; round++) {
         var touched = false;
@@ -57,7 +61,7 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32) -> Contact {
             let sphere = nearest(capsules[i], contact.point);
             let from_center = contact.point - sphere.xyz;
             if (dot(from_center, from_center) < sphere.w * sphere.w) {
-                contact.point = turned_out(parent, contact.point, length, sphere);
+                contact.point = turned_out(parent, heading, length, sphere);
                 contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
                 touched = true;
             }

@@ -12,8 +12,8 @@ import package::vector::rotate;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+             @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
     if (i >= GUIDES * VERTICES) { return; }
     let vertex = i / GUIDES;
@@ -32,8 +32,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     var goal = here + step.keep * bounded(here - before, before) + step.gravity;
     @if(global_shape) {
         // Full at the root, nothing at the end of the range: a strand has no kink where the pull ends.
-        let along = f32(vertex) / f32(VERTICES - 1u);
-        let fade = max(1.0 - along / step.global_range, 0.0);
+        let along = f32(vertex) / f32(VERTICES - 1u) / step.global_range;
+        let fade = max(1.0 - along * along, 0.0);
         goal += step.global_stiffness * fade * (shape - goal);
     }
     previous[i] = vec4(here, 0.0);

@@ -1,8 +1,8 @@
 // Wind, length constraints, and the guard against non-finite strands. One thread a guide.
 //
 // All happens in one walk. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is the same as one
-// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent ("follow
-// the leader": Mueller, Kim, Chentanez 2012, positions only). So a vertex is loaded and stored once.
+// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent (dynamic
+// follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
 
 import package::constants::{GUIDES, STRANDS, SWEEPS, VERTICES};
 import package::grid::{GROUP, thread_index};
@@ -19,10 +19,13 @@ import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
 const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
+/// Share of a vertex's placement that its parent's velocity answers for. The parent does not move when its child is placed;
+/// with no reaction at all strands gain energy without end, and at 1 it is never lost.
+const REACTION: f32 = 0.9;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+          @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= GUIDES) { return; }
     @if(wind) let wind = wind_of(step, strand);
@@ -35,7 +38,9 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     var after = positions[STRANDS + strand];
     var next_length = 0.0;
     var after_length = rest_lengths[strand];
-    var parent = next.xyz;
+    // The last vertex that was placed, and the past of the one that is about to be.
+    var parent = next;
+    var past = vec3(0.0);
     var direction = DOWN;
     var finite = true;
     for (var t = 0u; t < VERTICES + SWEEPS; t++) {
@@ -43,6 +48,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         let ahead = min(t + 2u, VERTICES - 1u);
         let position_ahead = positions[ahead * STRANDS + strand];
         let length_ahead = rest_lengths[(ahead - 1u) * GUIDES + strand];
+        let placed = max(t, SWEEPS) - SWEEPS;
+        let past_ahead = previous[placed * GUIDES + strand].xyz;
         for (var k = SWEEPS; k > 0u; k--) {
             window[k] = window[k - 1u];
             lengths[k] = lengths[k - 1u];
@@ -62,11 +69,19 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
             }
         }
         if (t >= SWEEPS) {
-            let vertex = window[SWEEPS];
-            direction = direction_or(vertex.xyz - parent, direction);
-            parent = select(vertex.xyz, parent + lengths[SWEEPS] * direction, vertex.w > 0.0);
-            finite = finite && is_finite(parent);
-            positions[(t - SWEEPS) * STRANDS + strand] = vec4(parent, vertex.w);
+            var vertex = window[SWEEPS];
+            if (placed > 0u) {
+                direction = direction_or(vertex.xyz - parent.xyz, direction);
+                let goal = select(vertex.xyz, parent.xyz + lengths[SWEEPS] * direction, vertex.w > 0.0);
+                if (parent.w > 0.0) {
+                    previous[(placed - 1u) * GUIDES + strand] = vec4(past + REACTION * (goal - vertex.xyz), 0.0);
+                }
+                vertex = vec4(goal, vertex.w);
+            }
+            parent = vertex;
+            past = past_ahead;
+            finite = finite && is_finite(parent.xyz);
+            positions[placed * STRANDS + strand] = parent;
         }
         next = after;
         next_length = after_length;

@@ -20,7 +20,7 @@ struct Step {
     global_stiffness: f32,
     /// Share of the strand, from the root, that the global shape reaches.
     global_range: f32,
-    /// Half of the stiffness: each of the two vertices moves half of the way.
+    /// Share of the way in one iteration, by both vertices of an edge together.
     local_stiffness: f32,
     /// Coefficient of sliding friction.
     friction: f32,

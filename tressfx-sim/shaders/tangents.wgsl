@@ -8,8 +8,8 @@ import package::vector::{NO_LENGTH, direction_or};
 @group(0) @binding(1) var<storage, read_write> tangents: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn tangents(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+            @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
     if (i >= STRANDS * VERTICES) { return; }
     let vertex = i / STRANDS;

@@ -26,16 +26,13 @@ fn across(u: vec3<f32>) -> vec3<f32> {
     return normalize(cross(u, axis));
 }
 
-/// Applies the smallest rotation that takes the unit vector `u` to the unit vector `v`. No trigonometry, no quaternion:
-/// R = c + [a]x + a a^T / (1 + c), where a = u x v and c = u . v. Opposite vectors are joined by a half turn.
-fn turn(u: vec3<f32>, v: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
-    let c = dot(u, v);
-    if (c < -0.999999) {
-        let axis = across(u);
-        return 2.0 * dot(axis, w) * axis - w;
-    }
-    let a = cross(u, v);
-    return c * w + cross(a, w) + a * (dot(a, w) / (1.0 + c));
+/// The smallest rotation that takes the unit vector `u` to the unit vector `v`, after `rotation`; a unit quaternion. Opposite
+/// vectors are joined by a half turn.
+fn turned(rotation: vec4<f32>, u: vec3<f32>, v: vec3<f32>) -> vec4<f32> {
+    let c = 1.0 + dot(u, v);
+    let arc = select(vec4(cross(u, v), c), vec4(across(u), 0.0), c < 1e-6);
+    let axis = arc.w * rotation.xyz + rotation.w * arc.xyz + cross(arc.xyz, rotation.xyz);
+    return normalize(vec4(axis, arc.w * rotation.w - dot(arc.xyz, rotation.xyz)));
 }
 
 /// Whether all three are numbers. Looks at the bits: compilers may assume that comparisons never see a NaN.

@@ -184,6 +184,16 @@ impl HairSim {
         self.strand_buffers.iter().map(read).collect()
     }
 
+    /// Brings the positions of the guides one sub-step ago back, a ticket each section: `vec4<f32>`, vertex-major over the
+    /// guides; `w` is 0.
+    pub fn read_previous(&self, list: &mut PassList) -> Vec<Ticket> {
+        let read = |section: &Section| {
+            let bytes = 16 * u64::from(section.buffers.strands.shape.guide_vertices());
+            list.read_buffer(section.buffers.previous, 0, bytes)
+        };
+        self.sections.iter().map(read).collect()
+    }
+
     /// Brings back how many strands were reset so far because they had become non-finite: one `u32`.
     pub fn read_non_finite(&self, list: &mut PassList) -> Ticket {
         list.read_buffer(self.shared.non_finite, 0, 4)

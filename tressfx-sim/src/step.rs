@@ -3,9 +3,9 @@
 //! With `h` the length of the sub-step and `h0` = 1/60 s:
 //!
 //! * damping keeps `exp(-60 D h)` of the velocity;
-//! * the shape constraints act through the Verlet integration as springs: what moves a vertex by a share `s` of its way in
-//!   each step accelerates it by `s / h^2` of the way. So it is `s / h^2` that has to stay, and the share becomes
-//!   `1 - (1 - s)^((h / h0)^2)`, which is that for small shares and never exceeds 1;
+//! * a shape constraint that moves a vertex by a share `s` of its way in each step is, behind the Verlet integration, a
+//!   spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller, Chentanez 2016).
+//!   It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
 //! * the shock is a share of the head's motion, not of a time, and stays as it is: in any number of sub-steps the strands
 //!   make the same share of the motion at once.
 
@@ -46,7 +46,7 @@ gpu_struct! {
         pub global_stiffness: f32,
         /// Share of the strand, from the root, that the global shape reaches.
         pub global_range: f32,
-        /// Half of the share of the way to the local shape in one iteration: each of the two vertices moves half.
+        /// Share of the way to the local shape in one iteration, by both vertices of an edge together.
         pub local_stiffness: f32,
         /// Coefficient of sliding friction.
         pub friction: f32,
@@ -70,8 +70,9 @@ pub struct Units {
 
 /// The share of the way that a shape constraint moves a vertex in a step of `length` seconds.
 pub fn spring_share(stiffness: f32, length: f64) -> f64 {
-    let ratio = length / REFERENCE_STEP;
-    -((-f64::from(stiffness)).ln_1p() * ratio * ratio).exp_m1()
+    let (stiffness, ratio) = (f64::from(stiffness), length / REFERENCE_STEP);
+    let spring = stiffness * ratio * ratio;
+    spring / (1.0 - stiffness + spring)
 }
 
 impl Step {
@@ -115,7 +116,7 @@ impl Step {
             },
             global_range: params.global_range,
             // The iterations share the stiffness: n of them, one after the other, make as much of the way as one would.
-            local_stiffness: (0.5 * -((-local).ln_1p() / iterations).exp_m1()) as f32,
+            local_stiffness: -((-local).ln_1p() / iterations).exp_m1() as f32,
             friction: params.friction,
             tip_separation: params.tip_separation.unwrap_or(units.tip_separation),
             reset: 0,
@@ -129,15 +130,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn small_shares_keep_the_spring_and_large_ones_stay_shares() {
-        let spring = |stiffness, length: f64| spring_share(stiffness, length) / (length * length);
-        for length in [1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0, 1.0 / 1000.0] {
-            let relative = spring(0.01, length) / spring(0.01, REFERENCE_STEP);
-            assert!((relative - 1.0).abs() < 0.006, "{relative}");
-            assert_eq!(spring_share(0.0, length), 0.0);
-            assert_eq!(spring_share(1.0, length), 1.0);
+    fn a_share_stands_for_the_same_spring_at_any_length() {
+        let spring = |share: f64, length: f64| share / (1.0 - share) / (length * length);
+        for stiffness in [0.01, 0.4, 0.99] {
+            let expected = spring(f64::from(stiffness), REFERENCE_STEP);
+            for length in [0.1, 1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0] {
+                let share = spring_share(stiffness, length);
+                assert!((spring(share, length) / expected - 1.0).abs() < 1e-9, "{stiffness} at {length}");
+            }
         }
-        assert!((spring_share(0.4, REFERENCE_STEP) - 0.4).abs() < 1e-7);
-        assert!(spring_share(0.9, 1.0) <= 1.0);
+        assert_eq!([0.0, 1.0].map(|stiffness| spring_share(stiffness, 0.001)), [0.0, 1.0]);
     }
 }

@@ -12,7 +12,10 @@ const ROUNDS: u32 = 4;
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
 pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
     let mut moved = false;
+    let mut old_parent = guide.positions[0];
     for i in 1..guide.vertices() {
+        let heading = rotate_back(step.head_rotation.as_dvec4(), guide.positions[i] - old_parent);
+        old_parent = guide.positions[i];
         if guide.is_pinned(i) {
             moved = false;
             continue;
@@ -23,20 +26,21 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
             guide.positions[i] = parent + length * direction_or(guide.positions[i] - parent, DVec3::NEG_Y);
         }
         let start = step.in_head(guide.positions[i]);
-        if let Some((point, normal)) = resolved(capsules, step.in_head(parent), start, length) {
+        if let Some((point, normal)) = resolved(capsules, step.in_head(parent), start, length, heading) {
             let depth = (point - start).dot(normal).max(0.0);
             let displacement = point - step.in_head(step.carry(guide.previous[i]));
             let kept = slid(displacement, normal, depth, f64::from(step.friction));
             let past = step.in_world(point - kept) - step.motion_translation.as_dvec3();
-            guide.previous[i] = rotate_back(step.motion_rotation, past);
+            guide.previous[i] = rotate_back(step.motion_rotation.as_dvec4(), past);
             guide.positions[i] = step.in_world(point);
             moved = true;
         }
     }
 }
 
-/// Where a vertex is when it has left all capsules, and the last surface's normal; `None` if it was outside.
-fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
+/// Where a vertex is when it has left all capsules, and the last surface's normal; `None` if it was outside. `heading` is
+/// the way that its edge had.
+fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, heading: DVec3) -> Option<(DVec3, DVec3)> {
     let mut point = start;
     let mut normal = None;
     for _ in 0..ROUNDS {
@@ -45,7 +49,7 @@ fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64) -> O
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < radius * radius {
-                point = turned_out(parent, point, length, center, radius);
+                point = turned_out(parent, heading, length, center, radius);
                 normal = Some(direction_or(point - center, before.unwrap_or(DVec3::ZERO)));
                 touched = true;
             }
@@ -67,15 +71,14 @@ fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {
 }
 
 /// The vertex on the sphere, at the same distance from its parent.
-fn turned_out(parent: DVec3, vertex: DVec3, length: f64, center: DVec3, radius: f64) -> DVec3 {
+fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius: f64) -> DVec3 {
     let from_center = parent - center;
     let distance = from_center.length();
     let outwards = direction_or(from_center, DVec3::Y);
-    let reach = (2.0 * distance * length).max(1e-24);
-    let c = ((radius * radius - distance * distance - length * length) / reach).clamp(-1.0, 1.0);
-    let edge = vertex - parent;
-    let sideways = direction_or(edge - edge.dot(outwards) * outwards, across(outwards));
-    parent + length * (c * outwards + (1.0 - c * c).max(0.0).sqrt() * sideways)
+    let missing = (radius - distance) * (radius + distance) - length * length;
+    let c = (missing / (2.0 * distance * length).max(1e-24)).clamp(-1.0, 1.0);
+    let sideways = direction_or(heading - heading.dot(outwards) * outwards, across(outwards));
+    parent + length * (c * outwards + (1.0 - c * c).sqrt() * sideways)
 }
 
 /// What friction leaves of a displacement along a surface.

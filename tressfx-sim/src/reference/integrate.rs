@@ -19,7 +19,8 @@ pub fn integrate(step: &Step, guide: &mut Guide) {
         let (here, before) = (guide.positions[i], guide.previous[i]);
         let mut goal = here + f64::from(step.keep) * bounded(step, here - before, before) + step.gravity.as_dvec3();
         if step.global_stiffness > 0.0 {
-            let fade = (1.0 - i as f64 / last / f64::from(step.global_range)).max(0.0);
+            let along = i as f64 / last / f64::from(step.global_range);
+            let fade = (1.0 - along * along).max(0.0);
             goal += f64::from(step.global_stiffness) * fade * (shape - goal);
         }
         guide.previous[i] = here;

@@ -7,6 +7,7 @@ use super::vector::{NO_LENGTH, direction_or, position};
 use crate::step::Step;
 
 const DOWN: DVec3 = DVec3::NEG_Y;
+const REACTION: f64 = 0.9;
 
 /// Wind, then `sweeps` sweeps of the distance constraints, then exact lengths from the root to the tip. Says whether the
 /// strand was non-finite and had to be reset. `strand` is the index of the guide: its wind depends on it.
@@ -16,7 +17,13 @@ pub fn length(step: &Step, guide: &mut Guide, strand: u32, sweeps: u32) -> bool 
         sweep(guide);
     }
     let last = guide.vertices() - 1;
+    let swept = guide.positions.to_vec();
     pull(guide, (0..=last).collect());
+    for i in 0..last {
+        if !guide.is_pinned(i) {
+            guide.previous[i] += REACTION * (guide.positions[i + 1] - swept[i + 1]);
+        }
+    }
     if guide.is_pinned(last) {
         for _ in 0..4 {
             pull(guide, (0..=last).rev().collect());

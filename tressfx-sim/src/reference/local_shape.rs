@@ -1,12 +1,10 @@
 //! `hair.sim.local_shape` in f64.
 
-use glam::DVec3;
-
 use super::Guide;
-use super::vector::{NO_LENGTH, position, rotate, turn};
+use super::vector::{NO_LENGTH, position, rotate, turned};
 use crate::step::Step;
 
-/// Each edge is pulled towards the angle to the edge before it that it has in the rest pose.
+/// Each edge is pulled towards the angle to the edge before it that it has in the rest pose; the first one to the head's.
 pub fn local_shape(step: &Step, guide: &mut Guide, iterations: u32) {
     for _ in 0..iterations {
         walk(step, guide);
@@ -14,21 +12,19 @@ pub fn local_shape(step: &Step, guide: &mut Guide, iterations: u32) {
 }
 
 fn walk(step: &Step, guide: &mut Guide) {
-    let edges: Vec<DVec3> =
-        guide.rest.windows(2).map(|pair| rotate(step.head_rotation, position(pair[1]) - position(pair[0]))).collect();
-    let mut directions = (DVec3::X, DVec3::X);
-    for i in 1..guide.vertices() - 1 {
-        let edge = guide.positions[i] - guide.positions[i - 1];
-        if edges[i - 1].length_squared().min(edge.length_squared()) > NO_LENGTH {
-            directions = (edges[i - 1].normalize(), edge.normalize());
+    let mut frame = step.head_rotation.as_dvec4();
+    for i in 0..guide.vertices() - 1 {
+        let goal = rotate(frame, position(guide.rest[i + 1]) - position(guide.rest[i]));
+        let (here, next) = (guide.inverse_mass(i), guide.inverse_mass(i + 1));
+        if here + next > 0.0 {
+            let edge = guide.positions[i + 1] - guide.positions[i];
+            let correction = f64::from(step.local_stiffness) / (here + next) * (goal - edge);
+            guide.positions[i] -= here * correction;
+            guide.positions[i + 1] += next * correction;
         }
-        let goal = guide.positions[i] + turn(directions.0, directions.1, edges[i]);
-        let correction = f64::from(step.local_stiffness) * (goal - guide.positions[i + 1]);
-        if !guide.is_pinned(i) {
-            guide.positions[i] -= correction;
-        }
-        if !guide.is_pinned(i + 1) {
-            guide.positions[i + 1] += correction;
+        let edge = guide.positions[i + 1] - guide.positions[i];
+        if goal.length_squared().min(edge.length_squared()) > NO_LENGTH {
+            frame = turned(frame, goal.normalize(), edge.normalize());
         }
     }
 }

@@ -1,0 +1,266 @@
+//! What the tests of the simulation share: a simulation with its backend, grooms, motions, distances.
+
+use std::path::PathBuf;
+
+use glam::{DVec3, Quat, Vec3, Vec4};
+use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_core::asset::{self, AssetFormat, HairAsset};
+use tressfx_core::backend::Backend;
+use tressfx_core::builtin::Builtin;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::Pose;
+use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
+
+use crate::gpu;
+
+/// A simulation and the GPU that it runs on.
+pub struct Rig {
+    /// The GPU.
+    pub backend: WgpuBackend,
+    /// The simulation.
+    pub sim: HairSim,
+    /// What it simulates.
+    pub strands: Vec<Strands>,
+}
+
+impl Rig {
+    /// One section; `None` where tests run without a GPU.
+    pub fn new(strands: Strands, params: SimParams, capsules: &[Capsule]) -> Option<Self> {
+        Self::with_sections(vec![(strands, params)], capsules)
+    }
+
+    /// Several sections; `None` where tests run without a GPU.
+    ///
+    /// # Panics
+    /// If the simulation cannot be made.
+    pub fn with_sections(sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Option<Self> {
+        let mut backend = gpu()?;
+        let descs: Vec<_> =
+            sections.iter().map(|(strands, params)| SectionDesc { strands, params: params.clone() }).collect();
+        let sim = HairSim::new(&mut backend, &descs, capsules).expect("the simulation is made");
+        Some(Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() })
+    }
+
+    /// Runs what `record` records.
+    ///
+    /// # Panics
+    /// If the backend fails.
+    pub fn run<T>(&mut self, record: impl FnOnce(&mut HairSim, &mut PassList) -> T) -> T {
+        let mut list = PassList::new();
+        let result = record(&mut self.sim, &mut list);
+        self.backend.run(&list).expect("the list runs");
+        result
+    }
+
+    /// Runs a frame.
+    ///
+    /// # Panics
+    /// If the input is refused or the backend fails.
+    pub fn frame(&mut self, input: &StepInput) -> StepReport {
+        self.run(|sim, list| sim.step(list, input)).expect("the input is fine")
+    }
+
+    /// Runs a motion for `seconds` at a frame rate, after a first frame of no time at its beginning.
+    pub fn play(&mut self, motion: &Motion, seconds: f64, fps: u32) {
+        self.frame(&motion.input(0.0, 0.0));
+        let frames = (seconds * f64::from(fps)).round() as u32;
+        for frame in 1..=frames {
+            self.frame(&motion.input(f64::from(frame) / f64::from(fps), 1.0 / f64::from(fps)));
+        }
+    }
+
+    /// Positions of all strands of a section, strand-major.
+    pub fn positions(&mut self, section: usize) -> Vec<Vec4> {
+        let tickets = self.run(|sim, list| sim.read_positions(list));
+        self.read(section, tickets[section])
+    }
+
+    /// Positions of the guides of a section one sub-step ago, strand-major.
+    pub fn previous(&mut self, section: usize) -> Vec<Vec4> {
+        let tickets = self.run(|sim, list| sim.read_previous(list));
+        self.read(section, tickets[section])
+    }
+
+    /// Tangents of all strands of a section, strand-major.
+    pub fn tangents(&mut self, section: usize) -> Vec<Vec4> {
+        let buffers = self.sim.buffers()[section];
+        let bytes = 16 * u64::from(buffers.shape.strand_vertices());
+        let ticket = self.run(|_, list| list.read_buffer(buffers.tangents, 0, bytes));
+        self.read(section, ticket)
+    }
+
+    /// Strands that were reset because they had become non-finite.
+    ///
+    /// # Panics
+    /// If the backend fails.
+    pub fn non_finite(&mut self) -> u32 {
+        let ticket = self.run(|sim, list| sim.read_non_finite(list));
+        bytemuck::pod_read_unaligned(&self.backend.read(ticket).expect("the list has run"))
+    }
+
+    fn read(&mut self, section: usize, ticket: Ticket) -> Vec<Vec4> {
+        let bytes = self.backend.read(ticket).expect("the list has run");
+        self.strands[section].deinterleave(&bytemuck::pod_collect_to_vec::<u8, Vec4>(&bytes))
+    }
+}
+
+/// A motion of the head, sized for a groom.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// Metres to each side, three times a second.
+    pub shake: f32,
+    /// Radians to each side, once a second, about y.
+    pub turn: f32,
+    /// The wind.
+    pub wind: Option<Wind>,
+    /// Metres that a unit of the file stands for.
+    pub metres_per_unit: f32,
+}
+
+impl Motion {
+    /// A head that stays where it is.
+    pub fn still(strands: &Strands) -> Self {
+        Self { metres_per_unit: strands.metres_per_unit, ..Self::default() }
+    }
+
+    /// A head that is shaken and turned, in a wind.
+    pub fn wild(strands: &Strands) -> Self {
+        let wind = Some(Wind::new(Vec3::new(2.0, 0.3, -1.0)));
+        Self { shake: 0.04, turn: 0.5, wind, metres_per_unit: strands.metres_per_unit }
+    }
+
+    /// The pose of the head at a time in seconds.
+    pub fn head(&self, seconds: f64) -> Pose {
+        let swing = |hertz: f64| (std::f64::consts::TAU * hertz * seconds).sin() as f32;
+        let rotation = if self.turn == 0.0 { Quat::IDENTITY } else { Quat::from_rotation_y(self.turn * swing(1.0)) };
+        Pose { rotation, translation: Vec3::X * (self.shake * swing(3.0) / self.metres_per_unit) }
+    }
+
+    /// The input of a frame that ends at a time.
+    pub fn input(&self, seconds: f64, dt: f64) -> StepInput {
+        StepInput { dt, head: self.head(seconds), wind: self.wind }
+    }
+}
+
+/// A small generator of numbers from 0 to 1; the same seed gives the same numbers.
+pub struct Random(u64);
+
+impl Random {
+    /// From a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    /// The next number from -1 to 1 (xorshift64*, Marsaglia 2003, Vigna 2016).
+    pub fn signed(&mut self) -> f32 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    }
+
+    /// A vector of three.
+    pub fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.signed(), self.signed(), self.signed())
+    }
+}
+
+/// Random curved strands of about 20 cm on a sphere of 10 cm, in metres.
+///
+/// # Panics
+/// If no strands can be made of so many vertices.
+pub fn random_strands(guides: u32, vertices: u32, follows: u32, seed: u64) -> Strands {
+    strands_of(random_asset(guides, vertices, seed), follows)
+}
+
+/// The asset of [`random_strands`].
+pub fn random_asset(guides: u32, vertices: u32, seed: u64) -> HairAsset {
+    let mut random = Random::new(seed);
+    let mut points = Vec::new();
+    for _ in 0..guides {
+        let mut direction = (random.vector() + Vec3::Y * 0.2).normalize_or(Vec3::Y);
+        let mut point = direction * 0.1;
+        for _ in 0..vertices {
+            points.push(point.to_array());
+            let length = 0.2 / (vertices - 1) as f32 * (1.0 + 0.5 * random.signed());
+            direction = (direction + 0.4 * random.vector()).normalize_or(Vec3::Y);
+            point += direction * length;
+        }
+    }
+    HairAsset::new(format!("random {seed}"), AssetFormat::Builtin, points, vec![vertices; guides as usize])
+}
+
+/// Strands of an asset, with follow strands that spread towards the tip.
+///
+/// # Panics
+/// If the asset is refused.
+pub fn strands_of(asset: HairAsset, follows: u32) -> Strands {
+    let options = StrandOptions { follows: Some(follows), tip_separation: 1.5, ..StrandOptions::default() };
+    Strands::new(&asset, &options).expect("the asset is fine")
+}
+
+/// The smaller of two: built-in grooms keep their look with fewer strands, and tests run on two cores.
+///
+/// # Panics
+/// If there is no such groom.
+pub fn builtin(name: &str, strands: u32) -> Strands {
+    let builtin = Builtin { strands, ..name.parse().expect("a built-in groom") };
+    strands_of(builtin.asset(), 0)
+}
+
+/// The real grooms in the folder that TRESSFX_ASSETS names; says so and gives none without it.
+pub const REAL: [&str; 6] = [
+    "tressfx41_ratboy/Ratboy_mohawk.tfx",
+    "sintel_lite/GEO-sintel_hair_emit.002-sintel_hair.tfx",
+    "tressfx31_testhair1/TestHair1.tfx",
+    "fibermesh_text_tfx/Fibermesh2_mohi0.3k_Curves.tfx",
+    "fibermesh_text_tfx/Fibermesh2_hair1k_Curves.tfx",
+    "unity_cube_hair_obj/Cube_Hair.obj",
+];
+
+/// A real groom of [`REAL`]; `None`, visibly, where TRESSFX_ASSETS is not set.
+///
+/// # Panics
+/// If the file cannot be read.
+pub fn real(path: &str) -> Option<Strands> {
+    let Some(folder) = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from) else {
+        eprintln!("skipped: TRESSFX_ASSETS is not set, {path} is not read");
+        return None;
+    };
+    Some(strands_of(asset::read(folder.join(path)).expect("the groom reads"), 0))
+}
+
+/// Roundings of a coordinate that [`worst`] lets pass.
+const ROUNDINGS: f64 = 4.0;
+
+/// The largest distance between GPU and reference, as a share of the length of the strand that it is in.
+///
+/// Rounding is absolute: at 1 m from the origin an f32 is no better than 6e-8 m, which is much for a strand of 1e-5 m. So a
+/// few roundings of the coordinate do not count.
+pub fn worst(strands: &Strands, gpu: &[Vec4], reference: &[DVec3]) -> f64 {
+    let vertices = strands.vertices as usize;
+    let lengths = lengths(strands);
+    let pairs = gpu.chunks(vertices).zip(reference.chunks(vertices)).enumerate();
+    let errors = pairs.flat_map(|(strand, (gpu, reference))| {
+        let length = lengths[strand % lengths.len()].max(1e-30);
+        gpu.iter().zip(reference).map(move |(gpu, reference)| {
+            let rounding = ROUNDINGS * f64::from(f32::EPSILON) * reference.abs().max_element();
+            let distance = gpu.truncate().as_dvec3().distance(*reference);
+            if distance.is_nan() { f64::INFINITY } else { (distance - rounding).max(0.0) / length }
+        })
+    });
+    errors.fold(0.0, f64::max)
+}
+
+/// Lengths of the guides.
+pub fn lengths(strands: &Strands) -> Vec<f64> {
+    let lengths = strands.rest_lengths.chunks(strands.vertices as usize);
+    lengths.map(|lengths| lengths.iter().map(|&length| f64::from(length)).sum()).collect()
+}
+
+/// In f64.
+pub fn wide(positions: &[Vec4]) -> Vec<DVec3> {
+    positions.iter().map(|position| position.truncate().as_dvec3()).collect()
+}

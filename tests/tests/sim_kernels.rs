@@ -1,0 +1,183 @@
+//! Each kernel, applied once, against its f64 reference: on random strands of many counts and on real grooms.
+
+use glam::{DVec3, Quat, Vec3, Vec4};
+use tressfx_conformance::sim::{Motion, REAL, Rig, random_strands, real, wide, worst};
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::Pose;
+use tressfx_sim::reference::{self, Guide};
+use tressfx_sim::step::{Step, Units};
+use tressfx_sim::{SimParams, Stage, SubStep, Wind};
+
+/// Of the strand's length.
+const TOLERANCE: f64 = 1e-5;
+
+fn params() -> SimParams {
+    SimParams { global_stiffness: 0.3, global_range: 0.6, ..SimParams::default() }
+}
+
+/// A ball inside of the roots of the random strands, and two solids among the tips.
+fn capsules(strands: &Strands) -> Vec<Capsule> {
+    let tips: Vec<Vec3> =
+        strands.rest.chunks(strands.vertices as usize).map(|strand| strand[strand.len() - 1].truncate()).collect();
+    let size = 0.2 * strands.bounds.radius();
+    let (one, other) = (tips[0], tips[tips.len() / 2]);
+    vec![
+        Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.09 / strands.metres_per_unit, radius_b: 0.0 },
+        Capsule { a: one, b: one + Vec3::new(size, -2.0 * size, 0.0), radius_a: size, radius_b: 0.5 * size },
+        Capsule { a: other, b: other, radius_a: size, radius_b: size },
+    ]
+}
+
+/// A sub-step in which everything happens.
+fn step(strands: &Strands) -> Step {
+    let motion = Pose {
+        rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.003, -0.002, 0.004),
+        translation: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
+    };
+    let before = Motion::wild(strands).head(0.2);
+    let sub_step = SubStep {
+        length: 1.0 / 120.0,
+        length_ratio: 1.0,
+        time: 0.7,
+        head: motion.after(&before),
+        motion,
+        acceleration: 0.0,
+    };
+    let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
+    Step::new(&params(), &units, &sub_step, Some(&Wind::new(Vec3::new(-8.0, 1.0, 3.0))))
+}
+
+/// Positions and previous positions of the guides, in f64.
+type State = (Vec<DVec3>, Vec<DVec3>);
+
+fn state(rig: &mut Rig) -> State {
+    let guides = rig.strands[0].rest.len();
+    (wide(&rig.positions(0)[..guides]), wide(&rig.previous(0)))
+}
+
+/// The reference of a stage, applied to all guides.
+fn expected(stage: Stage, strands: &Strands, step: &Step, capsules: &[Capsule], state: &mut State) {
+    let (vertices, params) = (strands.vertices as usize, params());
+    for guide in 0..strands.guides as usize {
+        let range = guide * vertices..(guide + 1) * vertices;
+        let mut of_guide = Guide {
+            rest: &strands.rest[range.clone()],
+            rest_lengths: &strands.rest_lengths[range.clone()],
+            positions: &mut state.0[range.clone()],
+            previous: &mut state.1[range],
+        };
+        match stage {
+            Stage::Integrate => reference::integrate(step, &mut of_guide),
+            Stage::VelocityShock => reference::velocity_shock(step, &mut of_guide),
+            Stage::LocalShape if vertices > 2 => {
+                reference::local_shape(step, &mut of_guide, params.local_iterations);
+            }
+            Stage::Length => {
+                let reset = reference::length(step, &mut of_guide, guide as u32, params.length_iterations);
+                assert!(!reset, "guide {guide} is finite");
+            }
+            Stage::Collide => reference::collide(step, &mut of_guide, capsules),
+            _ => {}
+        }
+    }
+}
+
+/// Runs a groom for a while, then each kernel once, from the GPU's own state before it.
+fn check(name: &str, strands: Strands) {
+    let capsules = capsules(&strands);
+    let (step, motion) = (step(&strands), Motion::wild(&strands));
+    let Some(mut rig) = Rig::new(strands, params(), &capsules) else { return };
+    rig.play(&motion, 0.2, 60);
+    let mut touched = false;
+    for stage in Stage::SUB_STEP {
+        let before = state(&mut rig);
+        rig.run(|sim, list| {
+            sim.record_step(list, 0, &step);
+            sim.record_stage(list, stage, true);
+        });
+        let after = (rig.positions(0), rig.previous(0));
+        let mut reference = before.clone();
+        expected(stage, &rig.strands[0], &step, &capsules, &mut reference);
+        let guides = reference.0.len();
+        let errors =
+            [worst(&rig.strands[0], &after.0[..guides], &reference.0), worst(&rig.strands[0], &after.1, &reference.1)];
+        println!("{name} {}: {:.1e} {:.1e} of strand length", stage.label(), errors[0], errors[1]);
+        assert!(errors.iter().all(|&error| error <= TOLERANCE), "{name} {}: {errors:?}", stage.label());
+        let changed = reference.0 != before.0;
+        assert!(changed || rig.strands[0].vertices == 2 || stage == Stage::Collide, "{name} {} moves", stage.label());
+        touched |= changed && stage == Stage::Collide;
+    }
+    assert!(touched || rig.strands[0].guides < 60 || rig.strands[0].vertices == 2, "{name}: something collides");
+    check_frame_end(name, &mut rig, &step);
+}
+
+fn check_frame_end(name: &str, rig: &mut Rig, step: &Step) {
+    rig.run(|sim, list| Stage::FRAME_END.iter().for_each(|&stage| sim.record_stage(list, stage, false)));
+    let (positions, tangents) = (rig.positions(0), rig.tangents(0));
+    let strands = &rig.strands[0];
+    let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
+    let all = wide(&positions);
+    let follows: Vec<DVec3> = strands
+        .follow_offsets
+        .iter()
+        .enumerate()
+        .flat_map(|(index, &offset)| {
+            let start = index % guides * vertices;
+            reference::follow(step, &all[start..start + vertices], offset)
+        })
+        .collect();
+    let error = worst(strands, &positions[guides * vertices..], &follows);
+    assert!(error <= TOLERANCE, "{name} hair.sim.follow: {error:e}");
+
+    for (strand, (points, tangents)) in all.chunks(vertices).zip(tangents.chunks(vertices)).enumerate() {
+        let expected = reference::tangents(points);
+        for (vertex, (tangent, expected)) in tangents.iter().zip(expected).enumerate() {
+            let error = tangent.truncate().as_dvec3().distance(expected);
+            assert!(error < 1e-4, "{name} hair.sim.tangents: strand {strand} vertex {vertex}: {error:e}");
+            assert_eq!(tangent.w, 0.0);
+        }
+    }
+}
+
+#[test]
+fn kernels_match_their_references_for_every_vertex_count() {
+    for vertices in [2, 3, 4, 7, 32, 256] {
+        check(&format!("random of {vertices} vertices"), random_strands(65, vertices, 2, u64::from(vertices)));
+    }
+}
+
+#[test]
+fn kernels_match_their_references_for_every_strand_count() {
+    for guides in [1, 63, 64, 65] {
+        check(&format!("{guides} random"), random_strands(guides, 16, 1, u64::from(guides)));
+    }
+}
+
+#[test]
+fn kernels_match_their_references_with_both_ends_pinned() {
+    let mut strands = random_strands(64, 12, 0, 5);
+    for strand in strands.rest.chunks_mut(12) {
+        strand[11].w = 0.0;
+    }
+    check("both ends pinned", strands);
+}
+
+#[test]
+fn kernels_match_their_references_on_real_grooms() {
+    for path in REAL {
+        real(path).into_iter().for_each(|strands| check(path, strands));
+    }
+}
+
+#[test]
+fn inverse_masses_stay_what_they_are() {
+    let strands = random_strands(65, 9, 2, 1);
+    let Some(mut rig) = Rig::new(strands, params(), &[]) else { return };
+    let motion = Motion::wild(&rig.strands[0]);
+    rig.play(&motion, 0.1, 60);
+    let positions = rig.positions(0);
+    let rest = &rig.strands[0].rest;
+    let expected: Vec<f32> = rest.iter().cycle().take(positions.len()).map(|vertex| vertex.w).collect();
+    assert_eq!(positions.iter().map(|position: &Vec4| position.w).collect::<Vec<_>>(), expected);
+}
