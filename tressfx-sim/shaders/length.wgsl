@@ -92,13 +92,15 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     if (!finite) { recover(strand); }
 }
 
-/// What moves the ends of an edge to its rest length, for an inverse mass of 1.
+/// What moves the ends of an edge to its rest length, for an inverse mass of 1. Without branches, and with nothing on the way
+/// from positions to result that the masses alone decide: the walk waits for this.
 fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
+    let mass = a.w + b.w;
+    let share = select(0.0, 1.0 / mass, mass > 0.0);
     let edge = b.xyz - a.xyz;
     let squared = dot(edge, edge);
-    let mass = a.w + b.w;
-    if (mass == 0.0 || squared <= NO_LENGTH) { return vec3(0.0); }
-    return edge * ((1.0 - length * inverseSqrt(squared)) / mass);
+    let stretched = share - share * length * inverseSqrt(max(squared, NO_LENGTH));
+    return edge * select(0.0, stretched, squared > NO_LENGTH);
 }
 
 /// Puts a strand into its rest pose, at rest, and counts it.

@@ -5,7 +5,7 @@ import package::grid::{GROUP, thread_index};
 import package::vector::{NO_LENGTH, direction_or};
 
 @group(0) @binding(0) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(1) var<storage, read_write> tangents: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read_write> strand_tangents: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
 fn tangents(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -19,7 +19,7 @@ fn tangents(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
     if (vertex > 0u) { sum += direction_or(here - positions[i - STRANDS].xyz, vec3(0.0)); }
     if (vertex + 1u < VERTICES) { sum += direction_or(positions[i + STRANDS].xyz - here, vec3(0.0)); }
     if (dot(sum, sum) <= NO_LENGTH) { sum = nearest_edge(strand, vertex); }
-    tangents[i] = vec4(normalize(sum), 0.0);
+    strand_tangents[i] = vec4(normalize(sum), 0.0);
 }
 
 /// The direction of the nearest edge that has one, first towards the tip, then towards the root; up if none has.
