@@ -8,7 +8,6 @@ import package::constants::{GUIDES, STRANDS, SWEEPS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
 import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
-import package::walk::CHUNK;
 @if(wind) import package::wind::{across_edge, wind_of};
 
 @group(0) @binding(0) var<uniform> step: Step;
@@ -20,6 +19,9 @@ import package::walk::CHUNK;
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
 const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
+/// Vertices that are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
+/// the stores of the vertices before it.
+const CHUNK: u32 = 8u;
 /// Wind on a vertex needs the next one too.
 @if(wind) const LOADED: u32 = CHUNK + 1u;
 @if(!wind) const LOADED: u32 = CHUNK;

@@ -5,7 +5,6 @@ import package::constants::{GUIDES, ITERATIONS, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
 import package::vector::{NO_LENGTH, rotate, turned};
-import package::walk::CHUNK;
 
 @group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
@@ -26,37 +25,33 @@ fn walk(strand: u32) {
     // so a curl that is turned as a whole is still the same curl.
     var frame = step.head_rotation;
     var here = positions[strand];
+    var next = positions[STRANDS + strand];
     var rest_here = rest[strand].xyz;
-    for (var start = 1u; start < VERTICES; start += CHUNK) {
-        var chunk: array<vec4<f32>, CHUNK>;
-        var rest_chunk: array<vec3<f32>, CHUNK>;
-        for (var i = 0u; i < CHUNK; i++) {
-            let vertex = min(start + i, VERTICES - 1u);
-            chunk[i] = positions[vertex * STRANDS + strand];
-            rest_chunk[i] = rest[vertex * GUIDES + strand].xyz;
+    var rest_next = rest[GUIDES + strand].xyz;
+    for (var i = 0u; i < VERTICES - 1u; i++) {
+        // Loaded before this vertex is stored: loads behind a store to the same buffer would wait for it.
+        let ahead = min(i + 2u, VERTICES - 1u);
+        let position_ahead = positions[ahead * STRANDS + strand];
+        let rest_ahead = rest[ahead * GUIDES + strand].xyz;
+
+        let goal = rotate(frame, rest_next - rest_here);
+        let mass = here.w + next.w;
+        let share = select(step.local_stiffness / mass, 0.0, mass == 0.0);
+        let correction = share * (goal - (next.xyz - here.xyz));
+        here -= vec4(here.w * correction, 0.0);
+        next += vec4(next.w * correction, 0.0);
+        positions[i * STRANDS + strand] = here;
+
+        // An edge without a length turns nothing.
+        let edge = next.xyz - here.xyz;
+        let lengths = vec2(dot(goal, goal), dot(edge, edge));
+        if (min(lengths.x, lengths.y) > NO_LENGTH) {
+            frame = turned(frame, goal * inverseSqrt(lengths.x), edge * inverseSqrt(lengths.y));
         }
-        for (var i = 0u; i < CHUNK; i++) {
-            if (start + i < VERTICES) {
-                var next = chunk[i];
-                let goal = rotate(frame, rest_chunk[i] - rest_here);
-                let mass = here.w + next.w;
-                let share = select(0.0, step.local_stiffness / mass, mass > 0.0);
-                let correction = share * (goal - (next.xyz - here.xyz));
-                here -= vec4(here.w * correction, 0.0);
-                next += vec4(next.w * correction, 0.0);
-                positions[(start + i - 1u) * STRANDS + strand] = here;
-                frame = carried(frame, goal, next.xyz - here.xyz);
-                here = next;
-                rest_here = rest_chunk[i];
-            }
-        }
+        here = next;
+        next = position_ahead;
+        rest_here = rest_next;
+        rest_next = rest_ahead;
     }
     positions[(VERTICES - 1u) * STRANDS + strand] = here;
-}
-
-/// The frame behind an edge that was to be `goal` and is `edge`. An edge without a length turns nothing.
-fn carried(frame: vec4<f32>, goal: vec3<f32>, edge: vec3<f32>) -> vec4<f32> {
-    let lengths = vec2(dot(goal, goal), dot(edge, edge));
-    if (min(lengths.x, lengths.y) <= NO_LENGTH) { return frame; }
-    return turned(frame, goal * inverseSqrt(lengths.x), edge * inverseSqrt(lengths.y));
 }

@@ -25,7 +25,6 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
-    ("walk", include_str!("../shaders/walk.wgsl")),
     ("wind", include_str!("../shaders/wind.wgsl")),
 ];
 
