@@ -30,17 +30,23 @@ fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
     let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
-    let missing = (sphere.w - distance) * (sphere.w + distance) - length * length;
-    let c = clamp(missing / max(2.0 * distance * length, 1e-24), -1.0, 1.0);
     let sideways = direction_or(heading - dot(heading, outwards) * outwards, across(outwards));
-    return parent + length * (c * outwards + sqrt(1.0 - c * c) * sideways);
+    // Cosine and sine of the angle between `outwards` and the new edge, from the sides; the sine as Heron has it, since a
+    // square root of 1 minus the squared cosine would lose half of the digits where the angle is small.
+    let gap = distance + length - sphere.w;
+    let product = gap * (distance + length + sphere.w) * (sphere.w - distance + length) * (sphere.w + distance - length);
+    let twice = max(2.0 * distance * length, 1e-24);
+    let c = ((sphere.w - distance) * (sphere.w + distance) - length * length) / twice;
+    if (product <= 0.0) { return parent + length * sign(c) * outwards; }
+    return parent + length * (clamp(c, -1.0, 1.0) * outwards + min(sqrt(product) / twice, 1.0) * sideways);
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin
-/// et al. 2014). The speed away from the surface is lost too, since it is the push's own; nothing sticks.
+/// et al. 2014). The push itself is no motion and is taken out as well. A touch of no depth changes nothing; nothing sticks.
 fn slid(displacement: vec3<f32>, normal: vec3<f32>, depth: f32, friction: f32) -> vec3<f32> {
     let along_normal = dot(displacement, normal);
     let slide = displacement - along_normal * normal;
     let lost = min(friction * depth, sqrt(dot(slide, slide)));
-    return slide - lost * direction_or(slide, vec3(0.0)) + min(along_normal, 0.0) * normal;
+    let pushed = min(depth, max(along_normal, 0.0));
+    return displacement - lost * direction_or(slide, vec3(0.0)) - pushed * normal;
 }

@@ -19,7 +19,9 @@ import package::vector::{direction_or, rotate, rotate_back};
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
 /// A vertex that leaves one capsule may enter another.
-const ROUNDS: u32 = 4u;
+const ROUNDS: u32 = 8u;
+/// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
+const INSIDE: f32 = 0.999999;
 /// Further than any groom extends.
 const FAR: f32 = 1e30;
 /// Of a clearance, what rounding leaves certain.
@@ -70,6 +72,7 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
 /// Where a vertex is when it has left all capsules. `heading` is the way that its edge had.
 fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>) -> Contact {
     var contact = Contact(start, false, vec3(0.0), 0.0);
+    var way = heading;
     for (var round = 0u; round < ROUNDS; round++) {
         var touched = false;
         var clear = FAR;
@@ -77,9 +80,11 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
             let sphere = nearest(capsules[i], contact.point);
             let from_center = contact.point - sphere.xyz;
             clear = min(clear, clearance(capsules[i], contact.point, sphere));
-            if (dot(from_center, from_center) < sphere.w * sphere.w) {
-                contact.point = turned_out(parent, heading, length, sphere);
+            if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
+                contact.point = turned_out(parent, way, length, sphere);
                 contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
+                // Between two capsules it is turned back and forth until it is out of both.
+                way = contact.point - parent;
                 touched = true;
             }
         }

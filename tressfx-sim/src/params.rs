@@ -59,7 +59,7 @@ impl Default for SimParams {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             damping: 0.08,
-            local_stiffness: 0.999,
+            local_stiffness: 0.9999,
             local_iterations: 2,
             global_stiffness: 0.2,
             global_range: 1.0,

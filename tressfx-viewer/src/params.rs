@@ -9,7 +9,7 @@ use tressfx_render::Material;
 use tressfx_sim::{ClockParams, SimParams, Wind};
 
 /// The file. Whatever is left out has its default.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct Params {
     /// How time is cut.
@@ -27,7 +27,7 @@ pub(crate) struct Params {
 }
 
 /// One section; what it names replaces the table of the same name whole.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct SectionParams {
     sim: Option<SimParams>,
@@ -82,6 +82,18 @@ mod tests {
         let params = Params::parse(text, 2).unwrap();
         assert_eq!([0, 1].map(|section| params.sim(section).damping), [0.5, 0.25]);
         assert_eq!(params.material(1), &Material::default());
+    }
+
+    #[test]
+    fn the_documented_defaults_are_the_defaults() {
+        let text = include_str!("../../docs/parameters.toml");
+        assert_eq!(Params::parse(text, 1).unwrap(), Params::default());
+        // What stands there as a comment must be right too.
+        let all = text.replace("# tip_", "tip_").replace("# fibre_", "fibre_");
+        let tables = all.split("# [").skip(1).map(|table| format!("[{}", table.replace("\n# ", "\n")));
+        for table in [all.split("# [").next().unwrap().to_owned()].into_iter().chain(tables) {
+            Params::parse(&table, 1).unwrap_or_else(|error| panic!("{error:#}\n{table}"));
+        }
     }
 
     #[test]

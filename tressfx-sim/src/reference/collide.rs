@@ -7,7 +7,8 @@ use super::Guide;
 use super::vector::{across, direction_or, rotate_back};
 use crate::step::Step;
 
-const ROUNDS: u32 = 4;
+const ROUNDS: u32 = 8;
+const INSIDE: f64 = 0.999999;
 
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
 pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
@@ -43,14 +44,15 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
 fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, heading: DVec3) -> Option<(DVec3, DVec3)> {
     let mut point = start;
     let mut normal = None;
+    let mut way = heading;
     for _ in 0..ROUNDS {
-        let before = normal;
         let mut touched = false;
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
-            if point.distance_squared(center) < radius * radius {
-                point = turned_out(parent, heading, length, center, radius);
-                normal = Some(direction_or(point - center, before.unwrap_or(DVec3::ZERO)));
+            if point.distance_squared(center) < INSIDE * radius * radius {
+                point = turned_out(parent, way, length, center, radius);
+                normal = Some(direction_or(point - center, normal.unwrap_or(DVec3::ZERO)));
+                way = point - parent;
                 touched = true;
             }
         }
@@ -75,10 +77,15 @@ fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius:
     let from_center = parent - center;
     let distance = from_center.length();
     let outwards = direction_or(from_center, DVec3::Y);
-    let missing = (radius - distance) * (radius + distance) - length * length;
-    let c = (missing / (2.0 * distance * length).max(1e-24)).clamp(-1.0, 1.0);
     let sideways = direction_or(heading - heading.dot(outwards) * outwards, across(outwards));
-    parent + length * (c * outwards + (1.0 - c * c).sqrt() * sideways)
+    let gap = distance + length - radius;
+    let product = gap * (distance + length + radius) * (radius - distance + length) * (radius + distance - length);
+    let twice = (2.0 * distance * length).max(1e-24);
+    let c = ((radius - distance) * (radius + distance) - length * length) / twice;
+    if product <= 0.0 {
+        return parent + length * c.signum() * outwards;
+    }
+    parent + length * (c.clamp(-1.0, 1.0) * outwards + (product.sqrt() / twice).min(1.0) * sideways)
 }
 
 /// What friction leaves of a displacement along a surface.
@@ -86,5 +93,6 @@ fn slid(displacement: DVec3, normal: DVec3, depth: f64, friction: f64) -> DVec3 
     let along_normal = displacement.dot(normal);
     let slide = displacement - along_normal * normal;
     let lost = (friction * depth).min(slide.length());
-    slide - lost * direction_or(slide, DVec3::ZERO) + along_normal.min(0.0) * normal
+    let pushed = depth.min(along_normal.max(0.0));
+    displacement - lost * direction_or(slide, DVec3::ZERO) - pushed * normal
 }

@@ -1,0 +1,336 @@
+//! What is left out changes nothing, and what is thrown at the simulation does not break it.
+
+use glam::{Quat, Vec3, Vec4};
+use tressfx_conformance::sim::{Motion, REAL, Rig, builtin, random_strands, real};
+use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::Pose;
+use tressfx_sim::step::{Step, Units};
+use tressfx_sim::{Clock, ClockParams, HairSim, SectionDesc, SimError, SimParams, Stage, StepInput, Wind, metrics};
+
+fn strands() -> Strands {
+    random_strands(65, 12, 1, 11)
+}
+
+/// The state after half a second of a motion.
+fn state(params: SimParams, capsules: &[Capsule], motion: &Motion) -> Option<(Vec<Vec4>, Vec<Vec4>)> {
+    let mut rig = Rig::new(strands(), params, capsules)?;
+    rig.play(motion, 0.5, 60);
+    Some((rig.positions(0), rig.previous(0)))
+}
+
+fn labels(params: SimParams, capsules: &[Capsule], strands: &Strands, motion: &Motion) -> Vec<&'static str> {
+    let mut backend = NullBackend::default();
+    let mut sim = HairSim::new(&mut backend, &[SectionDesc { strands, params }], capsules).unwrap();
+    let mut list = PassList::new();
+    sim.step(&mut list, &motion.input(0.0, 0.0)).unwrap();
+    list.clear_commands();
+    sim.step(&mut list, &motion.input(1.0 / 120.0, 1.0 / 120.0)).unwrap();
+    list.labels().collect()
+}
+
+/// Whatever acts so little that it changes no bit.
+const NEXT_TO_NOTHING: f32 = 1e-30;
+
+#[test]
+fn passes_without_an_effect_are_left_out_and_the_result_is_the_same_to_the_bit() {
+    let params = SimParams::default();
+    let motion = Motion::wild(&strands());
+    let without = |params: &SimParams, label| {
+        assert!(!labels(params.clone(), &[], &strands(), &motion).contains(&label), "{label} is left out");
+        state(params.clone(), &[], &motion)
+    };
+    let with = |params: &SimParams, capsules: &[Capsule], label| {
+        assert!(labels(params.clone(), capsules, &strands(), &motion).contains(&label), "{label} is there");
+        state(params.clone(), capsules, &motion)
+    };
+    let zero = SimParams { local_stiffness: 0.0, ..params.clone() };
+    let tiny = SimParams { local_stiffness: NEXT_TO_NOTHING, ..params.clone() };
+    assert_eq!(without(&zero, "hair.sim.local_shape"), with(&tiny, &[], "hair.sim.local_shape"));
+    let zero = SimParams { shock: 0.0, ..params.clone() };
+    let tiny = SimParams { shock: NEXT_TO_NOTHING, ..params.clone() };
+    assert_eq!(without(&zero, "hair.sim.velocity_shock"), with(&tiny, &[], "hair.sim.velocity_shock"));
+    let far = Capsule { a: Vec3::splat(9.0), b: Vec3::splat(9.5), radius_a: 1.0, radius_b: 0.5 };
+    assert_eq!(without(&params, "hair.sim.collide"), with(&params, &[far], "hair.sim.collide"));
+    let zero = SimParams { global_stiffness: 0.0, ..params.clone() };
+    let tiny = SimParams { global_stiffness: NEXT_TO_NOTHING, ..params };
+    assert_eq!(state(zero, &[], &motion), state(tiny, &[], &motion));
+}
+
+#[test]
+fn no_wind_is_a_wind_of_no_speed() {
+    let still_air = Motion { wind: Some(Wind::default()), ..Motion::wild(&strands()) };
+    let none = Motion { wind: None, ..still_air.clone() };
+    assert_eq!(state(SimParams::default(), &[], &still_air), state(SimParams::default(), &[], &none));
+}
+
+#[test]
+fn guides_do_not_care_for_their_follow_strands() {
+    let guides = |follows| {
+        let mut rig = Rig::new(random_strands(65, 12, follows, 11), SimParams::default(), &[])?;
+        let motion = Motion::wild(&rig.strands[0]);
+        rig.play(&motion, 0.3, 60);
+        Some(rig.positions(0)[..65 * 12].to_vec())
+    };
+    let alone = guides(0);
+    assert_eq!(alone, guides(3));
+    let bald = random_strands(3, 4, 0, 1);
+    assert!(!labels(SimParams::default(), &[], &bald, &Motion::still(&bald)).contains(&"hair.sim.follow"));
+}
+
+#[test]
+fn a_head_that_has_not_moved_gives_no_shock() {
+    let motion = Motion::still(&strands());
+    let stages = labels(SimParams::default(), &[], &strands(), &motion);
+    let expected: Vec<_> =
+        [Stage::Integrate, Stage::LocalShape, Stage::Length, Stage::Follow, Stage::Tangents].map(Stage::label).into();
+    assert_eq!(stages, expected);
+    // The pass by hand, in every sub-step.
+    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    rig.frame(&motion.input(0.0, 0.0));
+    let mut clock = Clock::new(ClockParams::default(), rig.strands[0].bounds).unwrap();
+    clock.advance(0.0, Pose::IDENTITY);
+    for _ in 0..30 {
+        for sub_step in clock.advance(1.0 / 60.0, Pose::IDENTITY).sub_steps {
+            let units = Units { metres_per_unit: 1.0, tip_separation: 0.0 };
+            let step = Step::new(&SimParams::default(), &units, &sub_step, None);
+            assert!(step.shock > 0.0);
+            rig.run(|sim, list| {
+                sim.record_step(list, 0, &step);
+                Stage::SUB_STEP.iter().for_each(|&stage| sim.record_stage(list, stage, false));
+            });
+        }
+    }
+    let by_hand = rig.positions(0)[..65 * 12].to_vec();
+    let usual = state(SimParams::default(), &[], &motion).unwrap().0[..65 * 12].to_vec();
+    assert_eq!(by_hand, usual);
+}
+
+#[test]
+fn sections_of_different_shapes_do_not_disturb_each_other() {
+    let sections = || {
+        let stiff = SimParams { global_stiffness: 0.6, ..SimParams::default() };
+        vec![(random_strands(65, 12, 1, 11), SimParams::default()), (random_strands(40, 31, 2, 12), stiff)]
+    };
+    let Some(mut both) = Rig::with_sections(sections(), &[]) else { return };
+    let motion = Motion::wild(&both.strands[0]);
+    both.play(&motion, 0.3, 60);
+    for (index, (strands, params)) in sections().into_iter().enumerate() {
+        let mut alone = Rig::new(strands, params, &[]).unwrap();
+        alone.play(&motion, 0.3, 60);
+        assert_eq!(alone.positions(0), both.positions(index), "section {index}");
+    }
+}
+
+#[test]
+fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
+    let ball = Capsule { a: Vec3::ZERO, b: Vec3::Y * 0.02, radius_a: 0.098, radius_b: 0.09 };
+    let post = Capsule { a: Vec3::new(0.2, -0.5, 0.0), b: Vec3::new(0.2, 0.5, 0.0), radius_a: 0.05, radius_b: 0.02 };
+    let soft = SimParams { global_stiffness: 0.02, local_stiffness: 0.5, ..SimParams::default() };
+    let Some(mut rig) = Rig::new(random_strands(200, 24, 0, 4), soft, &[ball, post]) else { return };
+    let motion = Motion::wild(&rig.strands[0]);
+    rig.play(&motion, 1.0, 60);
+    let (positions, to_head) = (rig.positions(0), motion.head(1.0).inverse());
+    let depth = |position: &Vec4| {
+        let point = to_head.transform(position.truncate());
+        ball.distance(point).min(post.distance(point))
+    };
+    let deepest = positions.iter().filter(|position| position.w > 0.0).map(depth).fold(f32::INFINITY, f32::min);
+    let touching = positions.iter().filter(|position| depth(position).abs() < 1e-6).count();
+    let error = metrics::edge_error(&rig.strands[0], &positions);
+    println!("deepest {deepest:.1e} m, {touching} vertices touch, edge error {error:?}");
+    assert!(deepest > -1e-5, "{deepest}");
+    assert!(touching > 100, "{touching}");
+    assert!(error.rms < 1e-4, "{error:?}");
+}
+
+#[test]
+fn friction_slows_what_slides() {
+    // Strands that lie on a ball, whose head turns beneath them.
+    let ball = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.099, radius_b: 0.099 };
+    let lag = |friction| {
+        let params =
+            SimParams { friction, shock: 0.0, global_stiffness: 0.0, local_stiffness: 0.0, ..SimParams::default() };
+        let mut rig = Rig::new(random_strands(100, 16, 0, 8), params, &[ball])?;
+        rig.play(&Motion::still(&rig.strands[0].clone()), 1.0, 60);
+        for frame in 1..=12 {
+            let head = Pose { rotation: Quat::from_rotation_y(0.05 * frame as f32), ..Pose::IDENTITY };
+            rig.frame(&StepInput::new(1.0 / 60.0, head));
+        }
+        let turned = Quat::from_rotation_y(0.6);
+        let before = rig.strands[0].rest.clone();
+        let tips = rig.positions(0).into_iter().zip(before).filter(|(position, _)| position.y > 0.0);
+        Some(tips.map(|(position, rest)| position.truncate().distance(turned * rest.truncate())).sum::<f32>())
+    };
+    let Some(ice) = lag(0.0) else { return };
+    let rough = lag(1.0).unwrap();
+    assert!(ice != rough, "friction acts");
+}
+
+#[test]
+fn a_non_finite_vertex_resets_its_strand_and_is_counted() {
+    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let motion = Motion::wild(&rig.strands[0]);
+    rig.play(&motion, 0.2, 60);
+    let (buffers, strand_count) = (rig.sim.buffers()[0], 130);
+    for (guide, bad) in [(3u64, f32::NAN), (64, f32::INFINITY)] {
+        rig.run(|_, list| list.upload(buffers.positions, 16 * (5 * strand_count + guide), &[bad]));
+    }
+    rig.frame(&motion.input(0.2 + 1.0 / 120.0, 1.0 / 120.0));
+    let (positions, previous) = (rig.positions(0), rig.previous(0));
+    assert_eq!((metrics::non_finite(&positions), metrics::non_finite(&previous)), (0, 0));
+    assert_eq!(rig.non_finite(), 2);
+    let head = motion.head(0.2 + 1.0 / 120.0);
+    for vertex in 0..12 {
+        let rest = head.transform(rig.strands[0].rest[3 * 12 + vertex].truncate());
+        assert!(positions[3 * 12 + vertex].truncate().distance(rest) < 1e-5);
+        assert_eq!(positions[3 * 12 + vertex].truncate(), previous[3 * 12 + vertex].truncate(), "at rest");
+    }
+    rig.play(&motion, 0.5, 60);
+    assert_eq!(rig.non_finite(), 2, "only once");
+}
+
+#[test]
+fn a_teleport_resets_and_a_fast_head_does_not() {
+    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let at = |x: f32| Pose { translation: Vec3::X * x, ..Pose::IDENTITY };
+    let report = rig.frame(&StepInput::new(0.0, at(0.0)));
+    assert!(report.reset && !report.teleported);
+    let report = rig.frame(&StepInput::new(1.0 / 60.0, at(0.2)));
+    assert!(!report.reset && !report.teleported);
+    let report = rig.frame(&StepInput::new(1.0 / 60.0, at(50.0)));
+    assert!(report.reset && report.teleported);
+    assert_eq!(rig.sim.resets(), 2);
+    let shifted = rig.positions(0)[..65 * 12]
+        .iter()
+        .zip(&rig.strands[0].rest)
+        .map(|(position, rest)| position.truncate().distance(rest.truncate() + Vec3::X * 50.0))
+        .fold(0.0, f32::max);
+    assert!(shifted < 0.01, "two sub-steps from rest, in the new place: {shifted}");
+    let turned = Pose { rotation: Quat::from_rotation_y(3.0), ..at(50.0) };
+    assert!(rig.frame(&StepInput::new(1.0 / 60.0, turned)).teleported);
+    rig.sim.reset();
+    let report = rig.frame(&StepInput::new(1.0 / 60.0, turned));
+    assert!(report.reset && !report.teleported);
+    assert_eq!(rig.sim.resets(), 4);
+}
+
+#[test]
+fn stress_leaves_strands_finite_and_their_lengths_right() {
+    let extremes = [
+        SimParams { local_stiffness: 0.0, global_stiffness: 0.0, ..SimParams::default() },
+        SimParams { local_stiffness: 1.0, global_stiffness: 1.0, ..SimParams::default() },
+        SimParams { gravity: Vec3::Y * 1000.0, max_speed: 1000.0, shock: 1.0, ..SimParams::default() },
+        SimParams {
+            damping: 0.0,
+            length_iterations: 0,
+            wind_drag: 1000.0,
+            shock_acceleration: 0.0,
+            ..SimParams::default()
+        },
+        SimParams { length_iterations: 16, local_iterations: 16, global_range: 0.1, ..SimParams::default() },
+    ];
+    for params in extremes {
+        let Some(mut rig) = Rig::new(strands(), params.clone(), &[]) else { return };
+        let wind = Some(Wind::new(Vec3::new(1e6, 0.0, 1.0)));
+        for frame in 0..60 {
+            let dt = [1.0 / 60.0, 0.0, 10.0, -1.0, 1e-9][frame % 5];
+            let rotation = Quat::from_rotation_y(1.9 * frame as f32);
+            let head = Pose { rotation, translation: Vec3::X * (frame as f32 * 7.0).sin() };
+            let report = rig.frame(&StepInput { dt, head, wind });
+            assert!(report.sub_steps <= 12, "{report:?}");
+            assert!(dt < 1.0 || (report.dropped > 9.8), "{report:?}");
+        }
+        let positions = rig.positions(0);
+        let error = metrics::edge_error(&rig.strands[0], &positions);
+        assert_eq!((metrics::non_finite(&positions), rig.non_finite()), (0, 0), "{params:?}");
+        assert!(error.max < 1e-3, "{params:?}: {error:?}");
+    }
+}
+
+#[test]
+fn what_is_not_finite_or_out_of_range_is_refused_and_nothing_is_recorded() {
+    let mut backend = NullBackend::default();
+    let strands = strands();
+    let wrong = SectionDesc { strands: &strands, params: SimParams { shock: 1.5, ..SimParams::default() } };
+    let error = HairSim::new(&mut backend, &[wrong], &[]).unwrap_err();
+    assert_eq!(error.to_string(), "parameter shock = 1.5 must be from 0 to 1");
+    let desc = SectionDesc { strands: &strands, params: SimParams::default() };
+    let mut sim = HairSim::new(&mut backend, &[desc], &[]).unwrap();
+    let mut list = PassList::new();
+    let nowhere = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };
+    for (input, name) in [
+        (StepInput::new(f64::NAN, Pose::IDENTITY), "dt"),
+        (StepInput::new(0.1, nowhere), "head.translation"),
+        (StepInput { wind: Some(Wind::new(Vec3::INFINITY)), ..StepInput::new(0.1, Pose::IDENTITY) }, "wind.velocity"),
+    ] {
+        assert_eq!(sim.step(&mut list, &input), Err(SimError::NonFinite { name }));
+    }
+    assert!(list.commands.is_empty());
+    assert!(sim.set_clock_params(ClockParams { sub_step: 0.0, ..ClockParams::default() }).is_err());
+    assert!(sim.set_params(&mut backend, 0, SimParams { damping: -1.0, ..SimParams::default() }).is_err());
+}
+
+#[test]
+fn parameters_can_change_while_it_runs() {
+    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let motion = Motion::still(&rig.strands[0]);
+    rig.play(&motion, 0.5, 60);
+    let hanging = rig.positions(0)[11].y;
+    let up = SimParams { gravity: Vec3::Y * 9.81, local_iterations: 3, ..SimParams::default() };
+    rig.sim.set_params(&mut rig.backend, 0, up.clone()).unwrap();
+    assert_eq!(rig.sim.params(0), &up);
+    rig.play(&motion, 1.0, 60);
+    assert!(rig.positions(0)[11].y > hanging, "gravity points up now");
+    let memory = |backend: &dyn tressfx_core::backend::Backend| backend.memory().bytes;
+    assert!(memory(&rig.backend) > 0);
+    rig.sim.destroy(&mut rig.backend);
+    assert_eq!(memory(&rig.backend), 0, "everything is freed");
+}
+
+#[test]
+fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl() {
+    let mut backend = NullBackend::default();
+    let strands = random_strands(10, 5, 1, 2);
+    let ball = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.1, radius_b: 0.1 };
+    let desc = SectionDesc { strands: &strands, params: SimParams::default() };
+    let mut sim = HairSim::new(&mut backend, &[desc], &[ball]).unwrap();
+    let mut list = PassList::new();
+    let motion = Motion::wild(&strands);
+    sim.step(&mut list, &motion.input(0.0, 0.0)).unwrap();
+    sim.step(&mut list, &motion.input(1.0 / 60.0, 1.0 / 60.0)).unwrap();
+    let mut seen = Vec::new();
+    for command in &list.commands {
+        let tressfx_core::pass::Command::Compute(pass) = command else { continue };
+        let shader = &pass.kernel.shader;
+        assert!(shader.storage_buffers() <= 6, "{}", shader.label);
+        if shader.label != Stage::Tangents.label() {
+            shader.check_layout::<Step>().unwrap();
+        }
+        seen.push(shader.label);
+    }
+    for stage in Stage::SUB_STEP.into_iter().chain(Stage::FRAME_END) {
+        assert!(seen.contains(&stage.label()), "{} runs", stage.label());
+    }
+    assert_eq!(tressfx_core::check::problem(&list), None);
+}
+
+/// A long shake of the mohawk, which holds strands of nearly no length: 200 frames, or as many as TRESSFX_LONG_FRAMES says.
+#[test]
+fn a_long_shake_leaves_nothing_non_finite() {
+    let frames: u32 = std::env::var("TRESSFX_LONG_FRAMES").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
+    let strands = real(REAL[0]).unwrap_or_else(|| builtin("long", 300));
+    let Some(mut rig) = Rig::new(strands, SimParams::default(), &[]) else { return };
+    let motion = Motion { shake: 0.06, ..Motion::still(&rig.strands[0]) };
+    for frame in 0..frames {
+        rig.frame(&motion.input(f64::from(frame) / 60.0, 1.0 / 60.0));
+    }
+    let positions = rig.positions(0);
+    let error = metrics::edge_error(&rig.strands[0], &positions);
+    let resets = rig.non_finite();
+    println!("{} after {frames} frames: {error:?}, {resets} resets", rig.strands[0].name);
+    assert_eq!((metrics::non_finite(&positions), resets), (0, 0));
+    assert!(error.rms < 0.02, "{error:?}");
+}
