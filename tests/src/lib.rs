@@ -1,5 +1,6 @@
 //! The suite that any TressFX backend must pass, and the tests across crates.
 
+pub mod render;
 pub mod sim;
 
 use tressfx_backend_wgpu::WgpuBackend;

@@ -42,8 +42,7 @@ impl Shader {
         let module = naga::front::wgsl::parse_str(&wgsl)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
         // naga counts pack2x16float, which is core WGSL, among what a device may lack.
-        let capabilities =
-            naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        let capabilities = naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;

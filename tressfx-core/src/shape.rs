@@ -1,6 +1,7 @@
 //! Simple solids: what hair collides with and what built-in grooms grow on.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// An ellipsoid whose axes are those of the space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +56,8 @@ impl Ellipsoid {
 }
 
 /// A capsule with a radius at either end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Capsule {
     /// Centre of one end.
     pub a: Vec3,
@@ -68,6 +70,12 @@ pub struct Capsule {
 }
 
 impl Capsule {
+    /// Whether its numbers make a solid: finite, and no negative radius.
+    pub fn is_sound(&self) -> bool {
+        let radii = [self.radius_a, self.radius_b];
+        self.a.is_finite() && self.b.is_finite() && radii.iter().all(|radius| radius.is_finite() && *radius >= 0.0)
+    }
+
     /// The nearest point of the axis and the radius there, interpolated along the axis.
     pub fn nearest(&self, point: Vec3) -> (Vec3, f32) {
         let axis = self.b - self.a;

@@ -18,7 +18,7 @@ mod units;
 
 use glam::{Quat, Vec2, Vec3, Vec4};
 
-use crate::asset::{HairAsset, LengthStats};
+use crate::asset::HairAsset;
 use resample::Strand;
 
 pub use bounds::Bounds;
@@ -99,7 +99,9 @@ impl Strands {
         };
         strands.derive_along_strands();
         strands.check_finite()?;
-        strands.metres_per_unit = options.metres_per_unit.unwrap_or_else(|| metres_per_unit(strands.median_length()));
+        strands.metres_per_unit = options
+            .metres_per_unit
+            .unwrap_or_else(|| metres_per_unit(&Bounds::of(strands.rest.iter().map(|vertex| vertex.truncate()))));
         strands.follow_radius = settings.follow_radius(strands.metres_per_unit);
         strands.place_follows(options.seed);
         Ok(strands)
@@ -147,12 +149,6 @@ impl Strands {
             None => Ok(()),
             Some((_, &strand)) => Err(StrandsError::Overflow { file: self.name.clone(), strand }),
         }
-    }
-
-    fn median_length(&self) -> f64 {
-        let lengths = self.rest_lengths.chunks(self.vertices as usize);
-        let mut lengths: Vec<f64> = lengths.map(|lengths| lengths.iter().map(|&l| f64::from(l)).sum()).collect();
-        LengthStats::new(&mut lengths).median
     }
 
     fn place_follows(&mut self, seed: u64) {

@@ -1,9 +1,10 @@
 //! Where a picture is taken from, and rigid poses.
 
 use glam::camera::rh;
-use glam::{Mat4, Quat, Vec3};
+use glam::{Mat4, Quat, Vec2, Vec3};
 
 use crate::backend::DepthOrder;
+use crate::strands::Bounds;
 
 /// A camera, right-handed, y up, looking along -z; clip space as in WebGPU: y up, z from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,23 +52,37 @@ impl View {
         2.0 * (self.fov * 0.5).tan() / self.size[1].max(1) as f32
     }
 
-    /// A view from the front, slightly from above and from the side, that holds a sphere.
-    pub fn around(center: Vec3, radius: f32, size: [u32; 2]) -> Self {
+    /// A view in which points fill most of the picture: slightly from above, from the front or, where they extend much
+    /// further from front to back than from side to side, from the side.
+    pub fn around(points: &[Vec3], size: [u32; 2]) -> Self {
         let fov = 30f32.to_radians();
+        let bounds = Bounds::of(points.iter().copied());
+        let extent = bounds.max - bounds.min;
+        let (center, radius) = (bounds.center(), bounds.radius().max(1e-6));
+        let is_deep = extent.z > 1.5 * extent.x;
+        let direction = if is_deep { Vec3::new(1.0, 0.12, 0.35) } else { Vec3::new(0.35, 0.12, 1.0) }.normalize();
         let aspect = size[0] as f32 / size[1].max(1) as f32;
-        let narrow = 2.0 * ((fov * 0.5).tan() * aspect.min(1.0)).atan();
-        let distance = radius.max(1e-6) / (narrow * 0.5).sin();
-        let direction = Vec3::new(0.35, 0.12, 1.0).normalize();
+        let half = Vec2::new(aspect, 1.0) * (fov * 0.5).tan() * Self::FILLED;
+        let to_view = rh::view::look_to_mat4(Vec3::ZERO, -direction, Vec3::Y);
+        // Each point must be so far away that it lies within the picture on both axes.
+        let distances = points.iter().map(|&point| {
+            let point = to_view.transform_point3(point - center);
+            point.z + (point.truncate().abs() / half).max_element()
+        });
+        let distance = distances.fold(radius * 0.5, f32::max);
         Self {
             eye: center + direction * distance,
             target: center,
             fov,
             near: distance * 0.01,
-            far: distance * 10.0,
+            far: (distance + radius) * 10.0,
             size,
             depth: DepthOrder::Reverse,
         }
     }
+
+    /// The share of the picture's half width or height that [`View::around`] fills.
+    const FILLED: f32 = 0.88;
 }
 
 /// A rotation followed by a translation.
@@ -126,11 +141,24 @@ mod tests {
     #[test]
     fn near_and_far_map_to_the_ends_of_the_depth_range() {
         for depth in [DepthOrder::Standard, DepthOrder::Reverse] {
-            let view = View { depth, ..View::around(Vec3::ZERO, 1.0, [640, 480]) };
+            let view = View { depth, ..View::around(&[Vec3::NEG_ONE, Vec3::ONE], [640, 480]) };
             let forward = (view.target - view.eye).normalize();
             let project = |distance: f32| view.view_projection().project_point3(view.eye + forward * distance).z;
             assert!((project(view.far) - depth.far()).abs() < 1e-4, "{depth:?}");
             assert!((project(view.near) - (1.0 - depth.far())).abs() < 1e-4, "{depth:?}");
+        }
+    }
+
+    #[test]
+    fn points_fill_the_picture_and_stay_inside() {
+        let ball = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+        for points in [&ball[..], &[Vec3::ZERO, Vec3::Y * 5.0], &[Vec3::ZERO, Vec3::new(0.1, 1.0, 7.0)]] {
+            for size in [[1280, 720], [200, 900]] {
+                let matrix = View::around(points, size).view_projection();
+                let reach = points.iter().map(|&point| matrix.project_point3(point).truncate().abs().max_element());
+                let reach = reach.fold(0.0, f32::max);
+                assert!((reach - View::FILLED).abs() < 1e-3, "{reach}");
+            }
         }
     }
 

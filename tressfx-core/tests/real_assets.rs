@@ -45,7 +45,7 @@ const KNOWN: [Known; 6] = [
         strands: 10027,
         vertices: 40108,
         length: [11.0, 11.0, 11.0],
-        metres_per_unit: 0.01,
+        metres_per_unit: 0.001,
     },
     Known {
         path: "fibermesh_text_tfx/Fibermesh2_mohi0.3k_Curves.tfx",
@@ -53,7 +53,7 @@ const KNOWN: [Known; 6] = [
         strands: 300,
         vertices: 1200,
         length: [6.137, 51.62, 113.2],
-        metres_per_unit: 0.01,
+        metres_per_unit: 0.001,
     },
     Known {
         path: "fibermesh_text_tfx/Fibermesh2_hair1k_Curves.tfx",
@@ -61,7 +61,7 @@ const KNOWN: [Known; 6] = [
         strands: 1000,
         vertices: 6000,
         length: [6.368, 37.04, 69.48],
-        metres_per_unit: 0.01,
+        metres_per_unit: 0.001,
     },
     Known {
         path: "unity_cube_hair_obj/Cube_Hair.obj",

@@ -19,5 +19,8 @@ fn cover(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
 @fragment
 fn backdrop(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let at = (position.xy / gradient.size - vec2(0.5, 0.45)) * vec2(gradient.size.x / gradient.size.y, 1.0);
-    return mix(gradient.middle, gradient.edge, smoothstep(0.0, 0.95, length(at)));
+    let color = mix(gradient.middle, gradient.edge, smoothstep(0.0, 0.95, length(at)));
+    // Jimenez' interleaved gradient noise, one step of 8 bits high: it hides the edges of those steps.
+    let noise = fract(52.9829189 * fract(dot(floor(position.xy), vec2(0.06711056, 0.00583715)))) - 0.5;
+    return vec4(color.rgb * (1.0 + 0.015 * noise), 1.0);
 }

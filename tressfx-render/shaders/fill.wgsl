@@ -48,61 +48,85 @@ fn ribbon_of(strand: u32, vertex: u32) -> Ribbon {
     return clip(ribbon, size, max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
 }
 
+// The line through the middle of a ribbon.
+struct Line {
+    delta: vec2<f32>,
+    square: f32,
+    normal: vec2<f32>,
+    reach: vec2<f32>,
+}
+
+fn line_of(ribbon: Ribbon) -> Line {
+    let delta = ribbon.end - ribbon.start;
+    let square = dot(delta, delta);
+    let direction = delta * inverseSqrt(max(square, 1e-20));
+    let normal = vec2(-direction.y, direction.x);
+    return Line(delta, square, normal, pixel_reach(normal));
+}
+
+struct Fragment {
+    color: vec3<f32>,
+    nearness: f32,
+    // In units of 1 / 65535; 0 is no fragment.
+    alpha: u32,
+}
+
+// What the ribbon leaves in a pixel: nothing unless the pixel's centre lies between its ends, half-open, so that the
+// segments of a straight strand share no pixel.
+fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
+    let offset = vec2<f32>(pixel) + 0.5 - ribbon.start;
+    let t = dot(offset, line.delta) / line.square;
+    if t < 0.0 || t >= 1.0 {
+        return Fragment();
+    }
+    let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, t);
+    let covered = coverage(dot(offset, line.normal), half_width, line.reach);
+    let color = mix(paint.start, paint.end, along(ribbon, t));
+    let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, t);
+    let scene = (textureLoad(scene_depth, pixel, 0) - frame.depth_offset) * frame.depth_scale;
+    let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
+    return Fragment(color.rgb, nearness, select(alpha, 0u, nearness < scene));
+}
+
 // Puts a fragment at the head of its pixel's list. One that has no room leaves the list as it is.
-fn store(node: u32, pixel: vec2<u32>, nearness: f32, paint: vec4<f32>, alpha: u32) {
+fn store(node: u32, pixel: vec2<u32>, fragment: Fragment) {
     if node < frame.node_capacity {
         let next = atomicExchange(&heads[pixel.y * frame.size.x + pixel.x], node + 1u);
-        nodes[node] = pack_node(nearness, paint.rgb, alpha, next);
+        nodes[node] = pack_node(fragment.nearness, fragment.color, fragment.alpha, next);
     }
 }
 
-// Visits the pixels whose centres lie between the ends of the ribbon, half-open, so that the segments of a straight strand
-// share no pixel. Column by column along the axis that it follows most. Returns the number of visible fragments.
+// Visits the pixels that the ribbon may touch, column by column along the axis that it follows most. Returns the number
+// of fragments.
 fn walk(ribbon: Ribbon, paint: Paint, first: u32, storing: bool) -> u32 {
-    let delta = ribbon.end - ribbon.start;
-    let square = dot(delta, delta);
-    if !ribbon.visible || square < 1e-12 {
+    let line = line_of(ribbon);
+    if !ribbon.visible || line.square < 1e-12 {
         return 0u;
     }
-    let direction = delta * inverseSqrt(square);
-    let normal = vec2(-direction.y, direction.x);
-    let reach = pixel_reach(normal);
-    let extent = max(ribbon.half_width.x, ribbon.half_width.y) + reach.x;
-    // Columns run along the first of the two axes.
-    let steep = abs(direction.y) > abs(direction.x);
-    let axes = select(direction, direction.yx, steep);
+    let steep = abs(line.delta.y) > abs(line.delta.x);
     let start = select(ribbon.start, ribbon.start.yx, steep);
     let end = select(ribbon.end, ribbon.end.yx, steep);
     let size = select(vec2<i32>(frame.size), vec2<i32>(frame.size.yx), steep);
-    let slope = axes.y / axes.x;
-    let half_height = extent / abs(axes.x);
-    let overhang = extent * abs(axes.y);
-    let first_column = max(i32(ceil(min(start.x, end.x) - overhang - 0.5)), 0);
+    // Along a column, and along the ribbon beyond its ends.
+    let extent = max(ribbon.half_width.x, ribbon.half_width.y) + line.reach.x;
+    let across = select(abs(line.normal), abs(line.normal.yx), steep);
+    let half_height = extent / across.y;
+    let overhang = extent * across.x;
+    let slope = (end.y - start.y) / (end.x - start.x);
     let last_column = min(i32(floor(max(start.x, end.x) + overhang - 0.5)), size.x - 1);
     var count = 0u;
-    for (var column = first_column; column <= last_column; column++) {
+    for (var column = max(i32(ceil(min(start.x, end.x) - overhang - 0.5)), 0); column <= last_column; column++) {
         let middle = start.y + slope * (f32(column) + 0.5 - start.x) - 0.5;
         let last_row = min(i32(floor(middle + half_height)), size.y - 1);
         for (var row = max(i32(ceil(middle - half_height)), 0); row <= last_row; row++) {
             let pixel = vec2<u32>(select(vec2(column, row), vec2(row, column), steep));
-            let offset = vec2<f32>(pixel) + 0.5 - ribbon.start;
-            let t = dot(offset, delta) / square;
-            if t < 0.0 || t >= 1.0 {
-                continue;
+            let fragment = fragment_at(ribbon, line, paint, pixel);
+            if fragment.alpha > 0u {
+                if storing {
+                    store(first + count, pixel, fragment);
+                }
+                count++;
             }
-            let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, t);
-            let covered = coverage(dot(offset, normal), half_width, reach);
-            let color = mix(paint.start, paint.end, along(ribbon, t));
-            let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
-            let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, t);
-            let scene = textureLoad(scene_depth, pixel, 0);
-            if alpha == 0u || nearness < (scene - frame.depth_offset) * frame.depth_scale {
-                continue;
-            }
-            if storing {
-                store(first + count, pixel, nearness, color, alpha);
-            }
-            count++;
         }
     }
     return count;

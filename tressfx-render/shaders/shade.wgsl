@@ -3,34 +3,47 @@
 
 import package::frame::{Frame, ambient, towards};
 import package::grid::{GROUP, thread_index};
-import package::lighting::{Fibre, form, scatter};
+import package::lighting::{Fibre, scatter};
+import package::ribbon::is_sound;
 import package::section::{Section, strand_random};
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> section: Section;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> tangents: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> openness: array<vec4<f32>>;
 // Colour and opacity as four half floats.
-@group(0) @binding(4) var<storage, read_write> colors: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read_write> colors: array<vec2<u32>>;
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
 
-// Away from the middle of the roots and across the strand: the side of the hair that the fibre lies on.
-fn outwards(point: vec3<f32>, tangent: vec3<f32>) -> vec3<f32> {
-    let out = point - (section.pose * vec4(section.center.xyz, 1.0)).xyz;
-    let across = out - tangent * dot(out, tangent);
-    return across * inverseSqrt(max(dot(across, across), 1e-20));
+fn posed(i: u32) -> vec3<f32> {
+    return (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
 }
 
-fn lit(point: vec3<f32>, fibre: Fibre) -> vec3<f32> {
-    let normal = outwards(point, fibre.tangent);
-    let eye = normalize(frame.eye.xyz - point);
-    var sum = ambient(frame.sky, frame.ground, normal) * fibre.albedo;
+fn unit(v: vec3<f32>) -> vec3<f32> {
+    return v * inverseSqrt(max(dot(v, v), 1e-20));
+}
+
+// Where light comes from through the groom: a vector and a constant, from the frame of the strand. See `openness.rs`.
+fn open_towards(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
+    let local = openness[i / section.strands * section.guides + strand % section.guides];
+    let growth = unit(posed(strand + section.strands) - posed(strand));
+    // Where a strand grows straight on, there is no direction across: it fades.
+    let side = growth - tangent * dot(growth, tangent);
+    let across = side * min(inverseSqrt(max(dot(side, side), 1e-20)), 5.0);
+    return vec4(local.x * tangent + local.y * across + local.z * cross(tangent, across), local.w);
+}
+
+fn lit(point: vec3<f32>, fibre: Fibre, open: vec4<f32>) -> vec3<f32> {
+    let eye = unit(frame.eye.xyz - point);
+    let around = mix(1.0, saturate(open.w), section.form);
+    var sum = around * ambient(frame.sky, frame.ground, unit(open.xyz)) * fibre.albedo;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = towards(frame.lights[i], point);
-        let arriving = frame.lights[i].color.rgb * (light.w * form(section.form, normal, light.xyz));
-        sum += arriving * scatter(fibre, eye, light.xyz);
+        let arriving = light.w * mix(1.0, saturate(open.w + dot(open.xyz, light.xyz)), section.form);
+        sum += frame.lights[i].color.rgb * arriving * scatter(fibre, eye, light.xyz);
     }
     return sum;
 }
@@ -45,13 +58,16 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let strand = i % section.strands;
     let guide = strand % section.guides;
     let along = f32(i / section.strands) / f32(section.vertices - 1u);
-    let point = (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
+    let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
     let paint = mix(section.base, section.tip, along);
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
-    let open = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
+    let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    let color = clamp(open * lit(point, fibre), vec3(0.0), vec3(BRIGHTEST));
+    var color = clamp(skin * lit(point, fibre, open_towards(i, strand, tangent)), vec3(0.0), vec3(BRIGHTEST));
+    if !is_sound(color) {
+        color = vec3(0.0);
+    }
     colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
 }

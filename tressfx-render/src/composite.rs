@@ -16,11 +16,8 @@ pub(crate) fn kernel(backend: &mut dyn Backend, target: Format) -> Result<Kernel
 }
 
 pub(crate) fn pass(list: &mut PassList, kernel: &Kernel, frame: BufferId, resolved: &Resolved, target: TextureId) {
-    let bindings = kernel.bind(&[
-        ("frame", frame.into()),
-        ("tiles", resolved.tiles.into()),
-        ("resolved", resolved.colors.into()),
-    ]);
+    let bindings =
+        kernel.bind(&[("frame", frame.into()), ("tiles", resolved.tiles.into()), ("resolved", resolved.colors.into())]);
     list.raster(RasterPass {
         label: LABEL,
         colors: vec![(target, Load::Keep)],

@@ -56,8 +56,6 @@ gpu_struct! {
     pub struct Section {
         /// Where the section is moved to, columns.
         pub pose: [[f32; 4]; 4],
-        /// Middle of the roots.
-        pub center: [f32; 4],
         /// Colour and opacity at the root.
         pub base: [f32; 4],
         /// Colour and opacity at the tip.
@@ -76,7 +74,7 @@ gpu_struct! {
         pub diffuse: f32,
         /// Brightness that differs from strand to strand.
         pub variation: f32,
-        /// How much the far side darkens.
+        /// How much the shadow of the groom on itself darkens.
         pub form: f32,
         /// Strength and exponent of the white highlight.
         pub primary: [f32; 2],
@@ -144,13 +142,12 @@ impl Section {
         let matrix: Mat4 = pose.matrix();
         Self {
             pose: matrix.to_cols_array_2d(),
-            center: with(info.root_center, 1.0),
             base: [base[0], base[1], base[2], material.opacity],
             tip: [tip[0], tip[1], tip[2], material.tip_opacity],
             strands: shape.strands(),
             guides: shape.guides,
             vertices: shape.vertices,
-            fibre_radius: material.fibre_radius / info.metres_per_unit,
+            fibre_radius: info.radius(material),
             tip_width: material.tip_width,
             diffuse: material.diffuse,
             variation: material.variation,

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! This crate writes passes into a [`PassList`](tressfx_core::pass::PassList); it names no backend, submits nothing and
-//! reads nothing back by itself. Each kernel is one WGSL file, one Rust file and one f64 [`reference`] of the same name.
+//! reads nothing back by itself. Each kernel is one WGSL file, one Rust file and one f64 [`mod@reference`] of the same name.
 
 #![forbid(unsafe_code)]
 
@@ -18,6 +18,7 @@ mod fill;
 pub mod gpu;
 mod lights;
 mod material;
+mod openness;
 mod pool;
 mod predict;
 pub mod reference;

@@ -54,12 +54,12 @@ impl Default for Lights {
     /// light from behind that draws the outline.
     fn default() -> Self {
         Self {
-            sky: Vec3::new(0.20, 0.22, 0.26),
+            sky: Vec3::new(0.22, 0.24, 0.28),
             ground: Vec3::new(0.09, 0.08, 0.07),
             lights: vec![
-                Light::directional(Vec3::new(0.75, 0.8, 0.75), Vec3::new(1.5, 1.38, 1.2)),
-                Light::directional(Vec3::new(-0.9, 0.25, 0.6), Vec3::new(0.25, 0.3, 0.4)),
-                Light::directional(Vec3::new(-0.45, 0.65, -0.9), Vec3::new(0.8, 0.85, 1.0)),
+                Light::directional(Vec3::new(0.75, 0.8, 0.75), Vec3::new(2.3, 2.1, 1.85)),
+                Light::directional(Vec3::new(-0.9, 0.25, 0.6), Vec3::new(0.35, 0.42, 0.55)),
+                Light::directional(Vec3::new(-0.45, 0.65, -0.9), Vec3::new(1.1, 1.2, 1.4)),
             ],
         }
     }

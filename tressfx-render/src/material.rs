@@ -18,8 +18,9 @@ pub struct Highlight {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// Radius of a fibre. Human hair has 0.00002 to 0.00006; more where one strand stands for many.
-    pub fibre_radius: f32,
+    /// Radius of a fibre. Human hair has 0.00002 to 0.00006; more where one strand stands for many. None fits it to the
+    /// groom: see [`StrandInfo::fitting_radius`](crate::StrandInfo::fitting_radius).
+    pub fibre_radius: Option<f32>,
     /// Width at the tip as a share of the width at the root.
     pub tip_width: f32,
     /// Opacity of a fibre at the root.
@@ -42,8 +43,8 @@ pub struct Material {
     pub tilt: f32,
     /// How much the tilt differs from strand to strand: it breaks the highlights up.
     pub tilt_variation: f32,
-    /// How much the side of the groom that is turned away from a light darkens, in place of the shadow that hair casts on
-    /// itself: 0 lights every strand as if it were alone.
+    /// How much of the shadow that the groom casts on itself in its rest pose is seen: 0 lights every strand as if it were
+    /// alone.
     pub form: f32,
     /// How much darker hair is at its root, where little light gets to.
     pub root_shade: f32,
@@ -55,21 +56,21 @@ impl Default for Material {
     /// Chestnut brown.
     fn default() -> Self {
         Self {
-            fibre_radius: 0.000_09,
+            fibre_radius: None,
             tip_width: 0.15,
             opacity: 0.9,
             tip_opacity: 0.8,
-            base_color: [0.19, 0.085, 0.04],
-            tip_color: [0.34, 0.17, 0.085],
-            variation: 0.3,
-            diffuse: 0.55,
-            primary: Highlight { strength: 0.10, exponent: 70.0 },
-            secondary: Highlight { strength: 1.0, exponent: 14.0 },
-            tilt: 5.0,
+            base_color: [0.105, 0.048, 0.024],
+            tip_color: [0.20, 0.10, 0.05],
+            variation: 0.35,
+            diffuse: 0.42,
+            primary: Highlight { strength: 0.15, exponent: 90.0 },
+            secondary: Highlight { strength: 1.6, exponent: 20.0 },
+            tilt: 4.0,
             tilt_variation: 0.5,
-            form: 0.85,
-            root_shade: 0.6,
-            root_extent: 0.35,
+            form: 1.0,
+            root_shade: 0.35,
+            root_extent: 0.2,
         }
     }
 }
@@ -92,9 +93,9 @@ impl Material {
     /// # Errors
     /// The first that is not, or is NaN.
     pub fn validate(&self) -> Result<(), MaterialError> {
-        let color = |color: [f32; 3]| color.into_iter().fold(0.0, |worst: f32, c| if c < 0.0 { c } else { worst.max(c) });
+        let color = |color: [f32; 3]| color.into_iter().find(|c| !(0.0..=1.0).contains(c)).unwrap_or(0.0);
         let checks = [
-            ("fibre_radius", self.fibre_radius, 1e-6..=0.01),
+            ("fibre_radius", self.fibre_radius.unwrap_or(0.01), 1e-6..=0.01),
             ("tip_width", self.tip_width, 0.0..=1.0),
             ("opacity", self.opacity, 0.0..=1.0),
             ("tip_opacity", self.tip_opacity, 0.0..=1.0),

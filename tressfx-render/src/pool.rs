@@ -1,8 +1,8 @@
 //! Memory of the A-buffer: lists of fragments, and what becomes of them.
 
-use bytemuck::{Pod, Zeroable};
 use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
 use tressfx_core::error::{Label, Result};
+use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
@@ -11,17 +11,23 @@ use crate::resolve::TILE;
 /// Bytes of a fragment: depth key, colour and alpha, next.
 pub(crate) const NODE_BYTES: u64 = 16;
 
-/// What the last frame drew.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Counters {
-    /// Fragments that passed the depth test.
-    pub fragments: u32,
-    /// Of those, the ones that found no room in the pool and are missing in the picture.
-    pub dropped: u32,
-    /// Pixels with at least one fragment.
-    pub pixels_with_hair: u32,
-    unused: u32,
+gpu_struct! {
+    /// What the last frame drew.
+    pub struct Counters {
+        /// Fragments that passed the depth test.
+        pub fragments: u32,
+        /// Of those, the ones that found no room in the pool and are missing in the picture.
+        pub dropped: u32,
+        /// Pixels with at least one fragment.
+        pub pixels_with_hair: u32,
+    }
+}
+
+impl Default for Counters {
+    /// Nothing.
+    fn default() -> Self {
+        bytemuck::Zeroable::zeroed()
+    }
 }
 
 impl Counters {
@@ -31,7 +37,7 @@ impl Counters {
     /// From the bytes of a read-back.
     ///
     /// # Panics
-    /// If there are not 16 bytes.
+    /// If there are not 12 bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }

@@ -13,7 +13,7 @@ pub(crate) fn fragments(view: &View, draws: &[SectionDraw]) -> f64 {
 fn of_section(view: &View, draw: &SectionDraw) -> f64 {
     let info = &draw.section.info;
     let to_view = view.view_matrix() * draw.pose.matrix();
-    let radius = draw.material.fibre_radius / info.metres_per_unit;
+    let radius = info.radius(draw.material);
     let width = |share: f32| radius * (draw.material.tip_width + (1.0 - draw.material.tip_width) * share);
     let sum: f64 =
         info.sample.iter().map(|(ends, shares)| f64::from(of_segment(view, to_view, *ends, shares.map(width)))).sum();

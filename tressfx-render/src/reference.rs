@@ -1,1 +1,57 @@
-//! f64.
+//! The kernels in f64, on the CPU, and the picture that they approximate.
+//!
+//! Functions have the names of the kernels and take what the kernels are given: [`gpu::Frame`] and the contents of the
+//! buffers, in their order. Nothing is rounded to half floats or to integers, except that a fragment too faint for the 16
+//! bits of its alpha does not exist here either.
+
+mod fill;
+mod image;
+mod resolve;
+mod shade;
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use crate::gpu;
+
+pub use fill::{Fragment, coverage, fill};
+pub use image::{exact, resolved, supersampled};
+pub use resolve::resolve;
+pub use shade::shade;
+
+/// A section on the CPU: what its buffers hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Section<'a> {
+    /// Counts and material.
+    pub uniform: gpu::Section,
+    /// As [`StrandBuffers::positions`](tressfx_core::strand_buffers::StrandBuffers::positions).
+    pub positions: &'a [[f32; 4]],
+    /// As [`StrandBuffers::tangents`](tressfx_core::strand_buffers::StrandBuffers::tangents).
+    pub tangents: &'a [[f32; 4]],
+    /// As [`StrandInfo::openness`](crate::StrandInfo::openness).
+    pub openness: &'a [[f32; 4]],
+    /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
+    pub thickness: &'a [f32],
+}
+
+impl Section<'_> {
+    fn index(&self, strand: u32, vertex: u32) -> usize {
+        (vertex * self.uniform.strands + strand) as usize
+    }
+
+    /// The position of a vertex, moved by the pose.
+    fn posed(&self, index: usize) -> DVec3 {
+        matrix(&self.uniform.pose).transform_point3(xyz(&self.positions[index]))
+    }
+}
+
+fn matrix(columns: &[[f32; 4]; 4]) -> DMat4 {
+    DMat4::from_cols_array_2d(&columns.map(|column| column.map(f64::from)))
+}
+
+fn xyz(v: &[f32; 4]) -> DVec3 {
+    DVec4::from_array(v.map(f64::from)).truncate()
+}
+
+fn pair(v: [f32; 2]) -> DVec2 {
+    DVec2::from_array(v.map(f64::from))
+}

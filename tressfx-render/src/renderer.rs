@@ -136,7 +136,7 @@ impl HairRenderer {
         self.pool.grow(backend, (f64::from(counters.fragments) * HEADROOM) as u64)
     }
 
-    /// Draws sections, sorted against each other. Where there is no strand, there is no pass.
+    /// Draws sections, each once, sorted against each other. Where there is no strand, there is no pass.
     ///
     /// # Panics
     /// If the view has another size than the renderer, or there are more than [`MAX_LIGHTS`](crate::MAX_LIGHTS) lights.
@@ -184,4 +184,40 @@ fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
         Need::StorageBindingBytes(8 * u64::from(size[0]) * u64::from(size[1])),
     ];
     backend.caps().check("hair.render", &needs)
+}
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::null::NullBackend;
+
+    use super::*;
+
+    #[test]
+    fn structs_are_laid_out_as_in_the_wgsl() {
+        let mut backend = NullBackend::default();
+        let renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
+        for kernel in [&renderer.shade, &renderer.fill, &renderer.resolve, &renderer.composite] {
+            kernel.shader.check_layout::<gpu::Frame>().unwrap();
+        }
+        renderer.shade.shader.check_layout::<gpu::Light>().unwrap();
+        for kernel in [&renderer.shade, &renderer.fill] {
+            kernel.shader.check_layout::<gpu::Section>().unwrap();
+        }
+        for kernel in [&renderer.fill, &renderer.resolve] {
+            kernel.shader.check_layout::<Counters>().unwrap();
+        }
+    }
+
+    #[test]
+    fn every_kernel_fits_the_limits_of_webgpu() {
+        let mut backend = NullBackend::default();
+        for k in K_RANGE {
+            let desc = RenderDesc { k, ..RenderDesc::new([64, 64], Format::Rgba8Srgb) };
+            let renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+            assert_eq!(renderer.resolve.shader.features, format!("K={k}"));
+            let counts = [&renderer.shade, &renderer.fill, &renderer.resolve, &renderer.composite]
+                .map(|kernel| kernel.shader.storage_buffers());
+            assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
+        }
+    }
 }

@@ -31,9 +31,9 @@ pub struct Surface {
 }
 
 impl Default for Surface {
-    /// Skin, powdered.
+    /// A tailor's dummy of dark clay: where hair is thin, it is seen between the strands, and no strand shades it.
     fn default() -> Self {
-        Self { color: Vec3::new(0.62, 0.42, 0.32), rim: 0.12, gloss: 0.05, exponent: 18.0, softness: 0.35 }
+        Self { color: Vec3::new(0.15, 0.108, 0.088), rim: 0.05, gloss: 0.06, exponent: 22.0, softness: 0.3 }
     }
 }
 
@@ -49,7 +49,7 @@ pub struct Backdrop {
 impl Default for Backdrop {
     /// Grey-blue paper.
     fn default() -> Self {
-        Self { middle: Vec3::new(0.34, 0.38, 0.43), edge: Vec3::new(0.085, 0.1, 0.125) }
+        Self { middle: Vec3::new(0.30, 0.33, 0.36), edge: Vec3::new(0.05, 0.057, 0.07) }
     }
 }
 
@@ -237,4 +237,19 @@ impl Backdrop {
 
 fn uniform_buffer<T>(backend: &mut dyn Backend, label: &'static str) -> Result<BufferId> {
     backend.create_buffer(&BufferDesc { label, bytes: size_of::<T>() as u64, usage: BufferUse::Uniform })
+}
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::null::NullBackend;
+
+    use super::*;
+
+    #[test]
+    fn structs_are_laid_out_as_in_the_wgsl() {
+        let pass = ScenePass::new(&mut NullBackend::default(), Format::Rgba16F, DepthOrder::Reverse).unwrap();
+        pass.mesh.shader.check_layout::<gpu::Frame>().unwrap();
+        pass.mesh.shader.check_layout::<uniform::Surface>().unwrap();
+        pass.backdrop.shader.check_layout::<uniform::Backdrop>().unwrap();
+    }
 }

@@ -4,23 +4,38 @@ use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
-use crate::gpu;
 use crate::material::Material;
+use crate::{gpu, openness};
 
 /// Segments that a prediction looks at.
 const SAMPLES: usize = 4096;
+
+/// Layers of hair that leave little to be seen between them.
+const COVER: f64 = 9.0;
+
+/// Radius of thick human hair in metres.
+const THINNEST: f64 = 0.000_06;
+
+/// Radius in metres beyond which a strand no longer looks like hair.
+const THICKEST: f64 = 0.000_4;
 
 /// What rendering needs to know of a section beside its buffers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrandInfo {
     /// Metres that a unit of the positions stands for.
     pub metres_per_unit: f32,
-    /// Middle of the roots: the side of a strand that faces away from it is taken for the outside of the hair.
-    pub root_center: Vec3,
+    /// Radius of a fibre in metres with which the strands cover the groom well: for a [`Material`] that gives none.
+    pub fitting_radius: f32,
+    /// How much light reaches a vertex of a guide in the rest pose, `vertex * guides + guide`. From the direction `d` it is
+    /// `w + (x * tangent + y * across + z * cross(tangent, across)) . d`, from 0 to 1, where `across` is the part of the
+    /// strand's first edge that is perpendicular to the tangent, of length 1 unless it is nearly 0. `[0, 0, 0, 1]` is a
+    /// strand that nothing shades.
+    pub openness: Vec<[f32; 4]>,
     /// An even sample of the segments of the rest pose: both ends, and the shares of the full width there. From it the
     /// number of fragments is predicted.
     pub sample: Vec<([Vec3; 2], [f32; 2])>,
@@ -30,8 +45,6 @@ impl StrandInfo {
     /// What there is to know of a groom.
     pub fn new(strands: &Strands) -> Self {
         let vertices = strands.vertices as usize;
-        let roots = strands.rest.iter().step_by(vertices).map(|root| root.truncate());
-        let root_center = roots.sum::<Vec3>() / strands.guides.max(1) as f32;
         let segments = strands.guides as usize * (vertices - 1);
         let segment = |i: usize| {
             let start = i / (vertices - 1) * vertices + i % (vertices - 1);
@@ -40,8 +53,27 @@ impl StrandInfo {
         };
         let count = segments.min(SAMPLES);
         let sample = (0..count).map(|i| segment(i * segments / count)).collect();
-        Self { metres_per_unit: strands.metres_per_unit, root_center, sample }
+        let fitting_radius = fitting_radius(strands);
+        let openness = openness::openness(strands, fitting_radius / strands.metres_per_unit);
+        let openness = strands.interleave(&openness);
+        Self { metres_per_unit: strands.metres_per_unit, fitting_radius, openness, sample }
     }
+
+    /// Radius of a fibre in the unit of the positions.
+    pub(crate) fn radius(&self, material: &Material) -> f32 {
+        material.fibre_radius.unwrap_or(self.fitting_radius) / self.metres_per_unit
+    }
+}
+
+/// The radius with which strands of that number and length cover the sides of the groom [`COVER`] times, if that is not
+/// thinner than hair nor as thick as a noodle.
+fn fitting_radius(strands: &Strands) -> f32 {
+    let extent = (strands.bounds.max - strands.bounds.min) * strands.metres_per_unit;
+    let sides = (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / 3.0;
+    let length: f64 = strands.rest_lengths.iter().map(|&length| f64::from(length)).sum();
+    let length = length * f64::from(strands.metres_per_unit) * f64::from(1 + strands.follows);
+    let radius = COVER * f64::from(sides) / (2.0 * length.max(1e-9));
+    radius.clamp(THINNEST, THICKEST) as f32
 }
 
 /// A section that can be drawn.
@@ -51,28 +83,45 @@ pub struct Section {
     pub(crate) info: StrandInfo,
     /// [`gpu::Section`].
     pub(crate) uniform: BufferId,
+    /// [`StrandInfo::openness`].
+    pub(crate) openness: BufferId,
     /// `vec2<u32>` a vertex of every strand: four half floats, colour and opacity.
     pub(crate) colors: BufferId,
 }
 
 impl Section {
-    /// Makes what rendering needs beside `buffers`, which stay the caller's.
+    /// Makes what rendering needs beside `buffers`, which stay the caller's, and uploads it with the next run of `list`.
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size.
-    pub fn new(backend: &mut dyn Backend, buffers: StrandBuffers, info: StrandInfo) -> Result<Self> {
-        let uniform = backend.create_buffer(&BufferDesc {
-            label: "hair.render.section",
-            bytes: size_of::<gpu::Section>() as u64,
-            usage: BufferUse::Uniform,
-        })?;
-        let colors = backend.create_buffer(&BufferDesc {
-            label: "hair.render.colors",
-            bytes: (8 * u64::from(buffers.shape.strand_vertices())).max(16),
-            usage: BufferUse::Storage,
-        });
-        let colors = colors.inspect_err(|_| backend.destroy(uniform.into()))?;
-        Ok(Self { buffers, info, uniform, colors })
+    ///
+    /// # Panics
+    /// If `info` is of another groom than `buffers`.
+    pub fn new(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        buffers: StrandBuffers,
+        info: StrandInfo,
+    ) -> Result<Self> {
+        let shape = buffers.shape;
+        assert_eq!(info.openness.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
+        let mut made = Vec::new();
+        let mut create = |label, bytes, usage| -> Result<BufferId> {
+            let buffer = backend.create_buffer(&BufferDesc { label, bytes, usage });
+            // What was made before goes with what could not be made.
+            if buffer.is_err() {
+                made.iter().for_each(|&buffer: &BufferId| backend.destroy(buffer.into()));
+            }
+            made.extend(buffer.as_ref().ok());
+            buffer
+        };
+        let uniform = create("hair.render.section", size_of::<gpu::Section>() as u64, BufferUse::Uniform)?;
+        let open_bytes = (16 * u64::from(shape.guide_vertices())).max(16);
+        let openness = create("hair.render.openness", open_bytes, BufferUse::Storage)?;
+        let color_bytes = (8 * u64::from(shape.strand_vertices())).max(16);
+        let colors = create("hair.render.colors", color_bytes, BufferUse::Storage)?;
+        list.upload(openness, 0, &info.openness);
+        Ok(Self { buffers, info, uniform, openness, colors })
     }
 
     /// Colours as `hair.render.shade` leaves them: for tests and tools.
@@ -82,8 +131,7 @@ impl Section {
 
     /// Frees what [`Section::new`] made.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        backend.destroy(self.uniform.into());
-        backend.destroy(self.colors.into());
+        [self.uniform, self.openness, self.colors].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 

@@ -18,6 +18,7 @@ pub(crate) fn pass(list: &mut PassList, kernel: &Kernel, frame: BufferId, sectio
         ("section", section.uniform.into()),
         ("positions", section.buffers.positions.into()),
         ("tangents", section.buffers.tangents.into()),
+        ("openness", section.openness.into()),
         ("colors", section.colors.into()),
     ]);
     list.compute(kernel, &bindings, Grid::for_threads(section.buffers.shape.strand_vertices(), GROUP));

@@ -12,6 +12,14 @@ fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
     return vec4(capsule.a + t * axis, capsule.radius_a + t * (capsule.radius_b - capsule.radius_a));
 }
 
+/// How far `point` can go before it may be inside. The radius changes along the axis too, so that is less than the distance
+/// from the surface where a capsule is tapered.
+fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
+    let axis = distance(capsule.a, capsule.b);
+    let taper = select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
+    return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper);
+}
+
 /// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
 /// plane of parent, centre and `heading` that is a triangle of three known sides. Where the parent is so deep inside that no
 /// turn is enough, the vertex ends straight outwards.

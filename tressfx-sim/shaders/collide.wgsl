@@ -2,8 +2,10 @@
 //
 // A vertex inside a capsule is not pushed but turned out about its parent, and what hangs on it follows, so that every edge
 // keeps its length. Strands that touch nothing stay as they are, to the bit.
+//
+// A vertex that is so far from all capsules that the next ones cannot have got there is the last to be looked at for a while.
 
-import package::capsule::{GpuCapsule, nearest, slid, turned_out};
+import package::capsule::{GpuCapsule, clearance, nearest, slid, turned_out};
 import package::constants::{GUIDES, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
@@ -20,21 +22,33 @@ import package::vector::{direction_or, rotate, rotate_back};
 const ROUNDS: u32 = 8u;
 /// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
 const INSIDE: f32 = 0.999999;
+/// Further than any groom extends.
+const FAR: f32 = 1e30;
+/// Of a clearance, what rounding leaves certain.
+const CERTAIN: f32 = 0.999;
 
-struct Contact { point: vec3<f32>, touched: bool, normal: vec3<f32> }
+/// `clear` is how far the point is from all capsules, if it has not touched any.
+struct Contact { point: vec3<f32>, touched: bool, normal: vec3<f32>, clear: f32 }
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+           @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= GUIDES) { return; }
     // The parent before and after this kernel.
     var old_parent = positions[strand].xyz;
     var parent = old_parent;
     var moved = false;
+    var clear = 0.0;
     for (var i = 1u; i < VERTICES; i++) {
         let vertex = positions[i * STRANDS + strand];
         var point = vertex.xyz;
+        clear -= distance(point, parent);
+        if (clear > 0.0 && !moved) {
+            old_parent = point;
+            parent = point;
+            continue;
+        }
         if (vertex.w > 0.0) {
             let length = rest_lengths[(i - 1u) * GUIDES + strand];
             if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
@@ -45,6 +59,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
                 point = in_world(contact.point);
             }
             moved = moved || contact.touched;
+            clear = CERTAIN * contact.clear;
         } else {
             moved = false;
         }
@@ -56,13 +71,15 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
 
 /// Where a vertex is when it has left all capsules. `heading` is the way that its edge had.
 fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>) -> Contact {
-    var contact = Contact(start, false, vec3(0.0));
+    var contact = Contact(start, false, vec3(0.0), 0.0);
     var way = heading;
     for (var round = 0u; round < ROUNDS; round++) {
         var touched = false;
+        var clear = FAR;
         for (var i = 0u; i < arrayLength(&capsules); i++) {
             let sphere = nearest(capsules[i], contact.point);
             let from_center = contact.point - sphere.xyz;
+            clear = min(clear, clearance(capsules[i], contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
                 contact.point = turned_out(parent, way, length, sphere);
                 contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
@@ -71,7 +88,10 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
                 touched = true;
             }
         }
-        if (!touched) { break; }
+        if (!touched) {
+            contact.clear = clear;
+            break;
+        }
         contact.touched = true;
     }
     return contact;

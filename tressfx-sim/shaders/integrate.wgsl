@@ -12,8 +12,8 @@ import package::vector::rotate;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+             @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
     if (i >= GUIDES * VERTICES) { return; }
     let vertex = i / GUIDES;

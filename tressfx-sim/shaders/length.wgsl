@@ -19,13 +19,19 @@ import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
 const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
+/// Vertices that are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
+/// the stores of the vertices before it.
+const CHUNK: u32 = 8u;
+/// Wind on a vertex needs the next one too.
+@if(wind) const LOADED: u32 = CHUNK + 1u;
+@if(!wind) const LOADED: u32 = CHUNK;
 /// Share of a vertex's placement that its parent's velocity answers for. The parent does not move when its child is placed;
 /// with no reaction at all strands gain energy without end, and at 1 it is never lost.
 const REACTION: f32 = 0.9;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+          @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= GUIDES) { return; }
     @if(wind) let wind = wind_of(step, strand);
@@ -34,71 +40,72 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     // Vertex `t - k` in `window[k]`, and in `lengths[k]` its rest length from its parent.
     var window: array<vec4<f32>, SWEEPS + 1u>;
     var lengths: array<f32, SWEEPS + 1u>;
-    var next = positions[strand];
-    var after = positions[STRANDS + strand];
-    var next_length = 0.0;
-    var after_length = rest_lengths[strand];
-    // The last vertex that was placed, and the past of the one that is about to be.
-    var parent = next;
-    var past = vec3(0.0);
+    // The last vertex that was placed.
+    var parent = vec4(0.0);
     var direction = DOWN;
     var finite = true;
-    for (var t = 0u; t < VERTICES + SWEEPS; t++) {
-        // Loaded before anything is stored: loads behind a store to the same buffer would wait for it.
-        let ahead = min(t + 2u, VERTICES - 1u);
-        let position_ahead = positions[ahead * STRANDS + strand];
-        let length_ahead = rest_lengths[(ahead - 1u) * GUIDES + strand];
-        let placed = max(t, SWEEPS) - SWEEPS;
-        let past_ahead = previous[placed * GUIDES + strand].xyz;
-        for (var k = SWEEPS; k > 0u; k--) {
-            window[k] = window[k - 1u];
-            lengths[k] = lengths[k - 1u];
+    for (var start = 0u; start < VERTICES + SWEEPS; start += CHUNK) {
+        var here: array<vec4<f32>, LOADED>;
+        var from_parent: array<f32, CHUNK>;
+        var past: array<vec3<f32>, CHUNK>;
+        for (var i = 0u; i < LOADED; i++) {
+            here[i] = positions[min(start + i, VERTICES - 1u) * STRANDS + strand];
         }
-        @if(wind) {
-            // The tip has no edge of its own and takes the last one's.
-            blown_edge = direction_or(after.xyz - next.xyz, blown_edge);
-            if (next.w > 0.0) { next = vec4(next.xyz + across_edge(wind, blown_edge), next.w); }
+        for (var i = 0u; i < CHUNK; i++) {
+            from_parent[i] = rest_lengths[(clamp(start + i, 1u, VERTICES - 1u) - 1u) * GUIDES + strand];
+            past[i] = previous[(clamp(start + i, SWEEPS + 1u, VERTICES + SWEEPS) - SWEEPS - 1u) * GUIDES + strand].xyz;
         }
-        window[0] = next;
-        lengths[0] = next_length;
-        for (var k = 0u; k < SWEEPS; k++) {
-            if (t > k && t < VERTICES + k) {
-                let correction = stretch(window[k + 1u], window[k], lengths[k]);
-                window[k + 1u] += vec4(window[k + 1u].w * correction, 0.0);
-                window[k] -= vec4(window[k].w * correction, 0.0);
+        for (var i = 0u; i < CHUNK; i++) {
+            let t = start + i;
+            for (var k = SWEEPS; k > 0u; k--) {
+                window[k] = window[k - 1u];
+                lengths[k] = lengths[k - 1u];
             }
-        }
-        if (t >= SWEEPS) {
-            var vertex = window[SWEEPS];
-            if (placed > 0u) {
-                direction = direction_or(vertex.xyz - parent.xyz, direction);
-                let goal = select(vertex.xyz, parent.xyz + lengths[SWEEPS] * direction, vertex.w > 0.0);
-                if (parent.w > 0.0) {
-                    previous[(placed - 1u) * GUIDES + strand] = vec4(past + REACTION * (goal - vertex.xyz), 0.0);
+            window[0] = here[i];
+            lengths[0] = from_parent[i];
+            @if(wind) {
+                // The tip has no edge of its own and takes the last one's.
+                blown_edge = direction_or(here[i + 1u].xyz - here[i].xyz, blown_edge);
+                window[0] += vec4(select(vec3(0.0), across_edge(wind, blown_edge), here[i].w > 0.0), 0.0);
+            }
+            for (var k = 0u; k < SWEEPS; k++) {
+                if (t > k && t < VERTICES + k) {
+                    let correction = stretch(window[k + 1u], window[k], lengths[k]);
+                    window[k + 1u] += vec4(window[k + 1u].w * correction, 0.0);
+                    window[k] -= vec4(window[k].w * correction, 0.0);
                 }
-                vertex = vec4(goal, vertex.w);
             }
-            parent = vertex;
-            past = past_ahead;
-            finite = finite && is_finite(parent.xyz);
-            positions[placed * STRANDS + strand] = parent;
+            if (t >= SWEEPS && t < VERTICES + SWEEPS) {
+                let placed = t - SWEEPS;
+                var vertex = window[SWEEPS];
+                if (placed > 0u) {
+                    direction = direction_or(vertex.xyz - parent.xyz, direction);
+                    let goal = select(vertex.xyz, parent.xyz + lengths[SWEEPS] * direction, vertex.w > 0.0);
+                    if (parent.w > 0.0) {
+                        let moved = goal - vertex.xyz;
+                        previous[(placed - 1u) * GUIDES + strand] = vec4(past[i] + REACTION * moved, 0.0);
+                    }
+                    vertex = vec4(goal, vertex.w);
+                }
+                parent = vertex;
+                finite = finite && is_finite(parent.xyz);
+                positions[placed * STRANDS + strand] = parent;
+            }
         }
-        next = after;
-        next_length = after_length;
-        after = position_ahead;
-        after_length = length_ahead;
     }
     @if(pinned_tips) reach(strand);
     if (!finite) { recover(strand); }
 }
 
-/// What moves the ends of an edge to its rest length, for an inverse mass of 1.
+/// What moves the ends of an edge to its rest length, for an inverse mass of 1. Without branches, and with nothing on the way
+/// from positions to result that the masses alone decide: the walk waits for this.
 fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
+    let mass = a.w + b.w;
+    let share = select(0.0, 1.0 / mass, mass > 0.0);
     let edge = b.xyz - a.xyz;
     let squared = dot(edge, edge);
-    let mass = a.w + b.w;
-    if (mass == 0.0 || squared <= NO_LENGTH) { return vec3(0.0); }
-    return edge * ((1.0 - length * inverseSqrt(squared)) / mass);
+    let stretched = share - share * length * inverseSqrt(max(squared, NO_LENGTH));
+    return edge * select(0.0, stretched, squared > NO_LENGTH);
 }
 
 /// Puts a strand into its rest pose, at rest, and counts it.

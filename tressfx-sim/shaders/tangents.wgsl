@@ -5,11 +5,11 @@ import package::grid::{GROUP, thread_index};
 import package::vector::{NO_LENGTH, direction_or};
 
 @group(0) @binding(0) var<storage, read> positions: array<vec4<f32>>;
-@group(0) @binding(1) var<storage, read_write> tangents: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read_write> strand_tangents: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn tangents(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+            @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
     if (i >= STRANDS * VERTICES) { return; }
     let vertex = i / STRANDS;
@@ -19,7 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     if (vertex > 0u) { sum += direction_or(here - positions[i - STRANDS].xyz, vec3(0.0)); }
     if (vertex + 1u < VERTICES) { sum += direction_or(positions[i + STRANDS].xyz - here, vec3(0.0)); }
     if (dot(sum, sum) <= NO_LENGTH) { sum = nearest_edge(strand, vertex); }
-    tangents[i] = vec4(normalize(sum), 0.0);
+    strand_tangents[i] = vec4(normalize(sum), 0.0);
 }
 
 /// The direction of the nearest edge that has one, first towards the tip, then towards the root; up if none has.

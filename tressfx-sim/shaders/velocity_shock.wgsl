@@ -11,8 +11,8 @@ import package::vector::rotate;
 @group(0) @binding(2) var<storage, read_write> positions: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-        @builtin(local_invocation_index) lane: u32) {
+fn velocity_shock(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+                  @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
     if (i >= GUIDES * VERTICES) { return; }
     let place = (i / GUIDES) * STRANDS + i % GUIDES;

@@ -20,6 +20,22 @@ pub struct EdgeError {
     pub edges: u64,
 }
 
+impl EdgeError {
+    /// The error over the edges of both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let edges = self.edges + other.edges;
+        let mean =
+            |own: f64, others: f64| (own * self.edges as f64 + others * other.edges as f64) / edges.max(1) as f64;
+        Self {
+            max: self.max.max(other.max),
+            rms: mean(self.rms * self.rms, other.rms * other.rms).sqrt(),
+            mean: mean(self.mean, other.mean),
+            edges,
+        }
+    }
+}
+
 /// Edge lengths of a pose of the guides against those of the rest pose, over all edges longer than [`SHORTEST_EDGE`] of their
 /// strand.
 ///
@@ -50,4 +66,18 @@ pub fn edge_error(strands: &Strands, positions: &[Vec4]) -> EdgeError {
 /// How many positions are not finite.
 pub fn non_finite(positions: &[Vec4]) -> usize {
     positions.iter().filter(|position| !position.is_finite()).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_error_of_two_sections_is_that_of_all_their_edges() {
+        let few = EdgeError { max: 0.4, rms: 0.2, mean: 0.1, edges: 1 };
+        let many = EdgeError { max: 0.3, rms: 0.0, mean: 0.0, edges: 3 };
+        let both = few.with(many);
+        assert_eq!(both, EdgeError { max: 0.4, rms: 0.1, mean: 0.025, edges: 4 });
+        assert_eq!(EdgeError::default().with(many), many);
+    }
 }

@@ -37,10 +37,11 @@ impl Camera {
         Ok(Self::Given { eye, target, fov: degrees.to_radians() })
     }
 
-    /// The view of a scene with these bounds.
-    pub(crate) fn view(self, bounds: &Bounds, size: [u32; 2]) -> View {
-        let around = View::around(bounds.center(), bounds.radius(), size);
+    /// The view of a groom with these vertices.
+    pub(crate) fn view(self, vertices: &[Vec3], size: [u32; 2]) -> View {
+        let around = View::around(vertices, size);
         let Self::Given { eye, target, fov } = self else { return around };
+        let bounds = Bounds::of(vertices.iter().copied());
         let reach = eye.distance(bounds.center()) + bounds.radius();
         View { eye, target, fov, near: reach * 1e-3, far: reach * 10.0, ..around }
     }

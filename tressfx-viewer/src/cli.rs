@@ -68,7 +68,7 @@ pub(crate) struct Scene {
     /// Parameters of simulation and look
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
-    /// Follow strands of each guide; without it, what the file says
+    /// Follow strands of each guide; without it, what the file says, or more where a file has few strands
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
     /// The backend that runs the passes

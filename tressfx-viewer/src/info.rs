@@ -30,7 +30,10 @@ fn print(report: &Report) {
         (min, max) => format!("{min} to {max} a strand"),
     };
     println!("  vertices   {} ({counts}, {} pinned)", report.vertices, report.pinned_vertices);
-    println!("  length     {:.4} mean, {:.4} to {:.4}, {:.4} median", length.mean, length.min, length.max, length.median);
+    println!(
+        "  length     {:.4} mean, {:.4} to {:.4}, {:.4} median",
+        length.mean, length.min, length.max, length.median
+    );
     println!("  bounds     {} to {}", bounds.min, bounds.max);
     println!("  unit       {unit} m (from the median length, {:.3} m)", length.median * f64::from(unit));
     println!("  follow     {} a guide", report.follow_count);

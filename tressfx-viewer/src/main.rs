@@ -1,2 +1,55 @@
-//! Placeholder.
-fn main() {}
+//! The program `tressfx`: simulates, renders, inspects and converts grooms. It holds no hair logic.
+
+#![forbid(unsafe_code)]
+
+mod camera;
+mod cli;
+mod convert;
+mod groom;
+mod info;
+mod motion;
+mod params;
+mod passes;
+mod picture;
+mod render;
+mod run;
+mod simulate;
+mod stats;
+mod studio;
+
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use clap::Parser;
+
+use crate::cli::{Cli, Command};
+
+/// Exit codes: 0 when all is well, 1 when something failed, 2 (by clap) when the words on the command line are wrong.
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Info(args) => info::run(&args),
+        Command::Render(args) => render::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Convert(args) => convert::run(&args),
+        Command::Adapters => adapters(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn adapters() -> Result<()> {
+    let adapters = tressfx_backend_wgpu::adapters();
+    if adapters.is_empty() {
+        bail!(
+            "{}",
+            tressfx_backend_wgpu::WgpuBackend::headless().err().map_or(String::new(), |error| error.to_string())
+        );
+    }
+    adapters.iter().for_each(|adapter| println!("{adapter}"));
+    Ok(())
+}

@@ -150,8 +150,11 @@ mod tests {
 
     #[test]
     fn rows_and_channels_come_out_in_order() {
-        let texels: Vec<u8> =
-            [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]].concat().into_iter().flat_map(|v| f16::from_f32(v).to_le_bytes()).collect();
+        let texels: Vec<u8> = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]
+            .concat()
+            .into_iter()
+            .flat_map(|v| f16::from_f32(v).to_le_bytes())
+            .collect();
         let picture = developed(&texels, [1, 2]);
         assert!(picture[(0, 0)][0] > 230 && picture[(0, 0)][1] == 0);
         assert!(picture[(0, 1)][1] > 230 && picture[(0, 1)][0] == 0);

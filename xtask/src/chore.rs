@@ -59,7 +59,9 @@ pub(crate) fn demo() -> Result<(), String> {
     for (groom, picture) in DEMO {
         let picture = folder.join(picture);
         println!("tressfx render {groom} --frames 60 --motion turn --out {}", picture.display());
-        run(Command::new(&tressfx).args(["render", groom, "--frames", "60", "--motion", "turn", "--out"]).arg(picture))?;
+        run(Command::new(&tressfx)
+            .args(["render", groom, "--frames", "60", "--motion", "turn", "--out"])
+            .arg(picture))?;
     }
     println!("The pictures are in {}", folder.display());
     Ok(())

@@ -19,7 +19,11 @@ const PACKAGE_MANAGERS: [PackageManager; 4] = [
         refresh: &["update"],
         install: &["install", "--yes", "--no-install-recommends", "mesa-vulkan-drivers", "libvulkan1"],
     },
-    PackageManager { program: "dnf", refresh: &[], install: &["install", "-y", "mesa-vulkan-drivers", "vulkan-loader"] },
+    PackageManager {
+        program: "dnf",
+        refresh: &[],
+        install: &["install", "-y", "mesa-vulkan-drivers", "vulkan-loader"],
+    },
     PackageManager {
         program: "pacman",
         refresh: &[],

@@ -31,7 +31,7 @@ pub struct Report {
     pub length: LengthStats,
     /// The box around all points.
     pub bounds: Bounds,
-    /// Metres that a unit of the file stands for, as guessed from the strands' length.
+    /// Metres that a unit of the file stands for, as guessed from the size of the groom.
     pub metres_per_unit: f32,
     /// Follow strands per guide that the header asks for.
     pub follow_count: u32,
@@ -104,6 +104,7 @@ impl Report {
         let points = asset.placed_points();
         let masses = asset.inverse_masses();
         let length = LengthStats::new(&mut strand_lengths(asset, &points));
+        let bounds = Bounds::of(points.iter().map(|&point| point.into()));
         Ok(Self {
             name: asset.name.clone(),
             format: asset.format,
@@ -113,8 +114,8 @@ impl Report {
             min_vertices: asset.counts.iter().copied().min().unwrap_or(0),
             max_vertices: asset.counts.iter().copied().max().unwrap_or(0),
             length,
-            bounds: Bounds::of(points.iter().map(|&point| point.into())),
-            metres_per_unit: metres_per_unit(length.median),
+            bounds,
+            metres_per_unit: metres_per_unit(&bounds),
             follow_count: asset.follow_count.unwrap_or(0),
             follow_radius: asset.follow_radius,
             pinned_vertices: masses.iter().filter(|&&mass| mass == 0.0).count(),

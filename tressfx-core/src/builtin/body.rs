@@ -32,8 +32,7 @@ impl Body {
             head: Ellipsoid { center: Vec3::ZERO, radii: Vec3::new(0.078, 0.115, 0.098) },
             bust: vec![
                 capsule([0.0, -0.06, -0.025], [0.0, -0.2, -0.035], 0.052, 0.056),
-                capsule([0.0, -0.265, SHOULDER_Z], [0.15, -0.285, SHOULDER_Z], 0.085, 0.06),
-                capsule([0.0, -0.265, SHOULDER_Z], [-0.15, -0.285, SHOULDER_Z], 0.085, 0.06),
+                capsule([-0.14, -0.272, SHOULDER_Z], [0.14, -0.272, SHOULDER_Z], 0.076, 0.076),
             ],
             face: Some(Ellipsoid { center: Vec3::new(0.0, -0.065, 0.085), radii: Vec3::new(0.062, 0.11, 0.065) }),
         }

@@ -18,11 +18,15 @@ const FLYAWAY: f32 = 0.03;
 /// Random streams of the clumps begin here; those of the strands at 0.
 const CLUMP_STREAMS: u64 = 1 << 32;
 
-/// A lock: the strand in its middle and the phase of its waves.
+/// A lock: the strand in its middle, and what all its strands wind around together.
 struct Clump {
     root: Vec3,
     points: Vec<Vec3>,
+    /// Two axes across each edge of the middle, carried along it without twist.
+    axes: Vec<[Vec3; 2]>,
     phase: f32,
+    /// Of the style's pitch.
+    pitch: f32,
 }
 
 /// Grows all strands: the points of all, concatenated. None is inside the body.
@@ -31,7 +35,8 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
     let clump = |(index, root): (usize, &Root)| {
         let mut random = Pcg32::new(seed, CLUMP_STREAMS + index as u64);
         let points = growth::grow(look, body, root, vertices, &mut random);
-        Clump { root: root.position, points, phase: TAU * random.random::<f32>() }
+        let (phase, pitch) = (TAU * random.random::<f32>(), 0.85 + 0.3 * random.random::<f32>());
+        Clump { root: root.position, axes: axes(&points), points, phase, pitch }
     };
     let clumps: Vec<Clump> = roots[..count].iter().enumerate().map(clump).collect();
     let mut all = Vec::with_capacity(roots.len() * vertices);
@@ -42,7 +47,7 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
         if random.random::<f32>() > FLYAWAY {
             draw_to(&mut points, clump, look);
         }
-        wind(&mut points, &look.wave, clump.phase, &mut random);
+        wind(&mut points, &look.wave, clump, &mut random);
         let tail = points[1..].iter().map(|&point| body.clear(point).to_array());
         all.extend(std::iter::once(root.position.to_array()).chain(tail));
     }
@@ -65,28 +70,37 @@ fn draw_to(points: &mut [Vec3], clump: &Clump, look: &Look) {
     let last = (points.len() - 1) as f32;
     for (vertex, (point, &middle)) in points.iter_mut().zip(&clump.points).enumerate() {
         let s = vertex as f32 / last;
-        let pull = look.clumping * s * s * (3.0 - 2.0 * s);
+        let near = (s / look.clump_onset).min(1.0);
+        let pull = look.clumping * near * near * (3.0 - 2.0 * near);
         let width = 1.0 + (look.clump_width - 1.0) * s;
         *point = point.lerp(middle + offset * width, pull);
     }
 }
 
-/// Winds a strand around its own middle line, in axes that are carried along it without twist.
-fn wind(points: &mut [Vec3], wave: &Wave, phase: f32, random: &mut impl Rng) {
-    let phase = phase + 0.9 * (random.random::<f32>() - 0.5);
-    let radius = wave.radius * (0.75 + 0.5 * random.random::<f32>());
-    let pitch = wave.pitch * (0.94 + 0.12 * random.random::<f32>());
-    let middle = points.to_vec();
-    let mut tangent = (middle[1] - middle[0]).normalize_or(Vec3::Y);
+/// Axes across the edges of a strand, carried along it without twist.
+fn axes(points: &[Vec3]) -> Vec<[Vec3; 2]> {
+    let mut tangent = (points[1] - points[0]).normalize_or(Vec3::Y);
     let (mut u, mut v) = tangent.any_orthonormal_pair();
-    let mut arc = 0.0;
-    for (point, pair) in points[1..].iter_mut().zip(middle.windows(2)) {
+    let carried = points.windows(2).map(|pair| {
         let next = (pair[1] - pair[0]).normalize_or(tangent);
         let turn = Quat::from_rotation_arc(tangent, next);
         (tangent, u, v) = (next, turn * u, turn * v);
-        arc += pair[0].distance(pair[1]);
+        [u, v]
+    });
+    carried.collect()
+}
+
+/// Winds a strand around its own middle line, side by side with the other strands of its clump.
+fn wind(points: &mut [Vec3], wave: &Wave, clump: &Clump, random: &mut impl Rng) {
+    let phase = clump.phase + wave.looseness * (random.random::<f32>() - 0.5);
+    let radius = wave.radius * (1.0 + 0.6 * wave.looseness * (random.random::<f32>() - 0.5));
+    let mut before = points[0];
+    let mut arc = 0.0;
+    for (point, [u, v]) in points[1..].iter_mut().zip(&clump.axes) {
+        arc += before.distance(*point);
+        before = *point;
         let grown = (arc / wave.onset).min(1.0);
-        let angle = phase + TAU * arc / pitch;
+        let angle = phase + TAU * arc / (wave.pitch * clump.pitch);
         *point += (u * angle.cos() + v * (wave.roundness * angle.sin())) * (radius * grown * grown);
     }
 }

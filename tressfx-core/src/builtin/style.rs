@@ -34,6 +34,8 @@ pub(super) struct Look {
     pub(super) clump_size: usize,
     /// How far a strand is drawn to its clump at the tip, 0 to 1.
     pub(super) clumping: f32,
+    /// Share of the strand, from the root, over which it is drawn there.
+    pub(super) clump_onset: f32,
     /// Width that a clump keeps at its tip, as a fraction of its width at the roots.
     pub(super) clump_width: f32,
     pub(super) wave: Wave,
@@ -49,6 +51,8 @@ pub(super) struct Wave {
     pub(super) roundness: f32,
     /// Distance from the root at which it has its full radius.
     pub(super) onset: f32,
+    /// How far the strands of a clump are from winding as one, 0 to 1.
+    pub(super) looseness: f32,
 }
 
 impl Look {
@@ -60,7 +64,7 @@ impl Look {
                 length: 0.16,
                 hem: Some(-0.24),
                 volume: 0.022,
-                wave: Wave { radius: 0.009, pitch: 0.075, roundness: 0.35, onset: 0.16 },
+                wave: Wave { radius: 0.009, pitch: 0.075, roundness: 0.35, onset: 0.16, looseness: 0.7 },
                 ..Self::long()
             },
             Style::Curly => Self::curly(),
@@ -82,8 +86,9 @@ impl Look {
             volume: 0.026,
             clump_size: 48,
             clumping: 0.8,
+            clump_onset: 1.0,
             clump_width: 0.45,
-            wave: Wave { radius: 0.005, pitch: 0.15, roundness: 0.2, onset: 0.25 },
+            wave: Wave { radius: 0.005, pitch: 0.15, roundness: 0.2, onset: 0.25, looseness: 0.9 },
         }
     }
 
@@ -93,15 +98,16 @@ impl Look {
             parting: 0.0,
             lift: 0.9,
             gravity: 13.0,
-            length: 0.115,
+            length: 0.14,
             hem: None,
             length_spread: 0.25,
             direction_spread: 0.3,
             volume: 0.03,
-            clump_size: 14,
-            clumping: 0.85,
-            clump_width: 0.5,
-            wave: Wave { radius: 0.0065, pitch: 0.022, roundness: 1.0, onset: 0.03 },
+            clump_size: 40,
+            clumping: 0.9,
+            clump_onset: 0.45,
+            clump_width: 0.4,
+            wave: Wave { radius: 0.009, pitch: 0.03, roundness: 1.0, onset: 0.035, looseness: 0.35 },
         }
     }
 
@@ -118,8 +124,9 @@ impl Look {
             volume: 0.0,
             clump_size: 24,
             clumping: 0.7,
+            clump_onset: 1.0,
             clump_width: 0.25,
-            wave: Wave { radius: 0.0006, pitch: 0.02, roundness: 0.5, onset: 0.01 },
+            wave: Wave { radius: 0.0006, pitch: 0.02, roundness: 0.5, onset: 0.01, looseness: 0.9 },
         }
     }
 }

@@ -11,7 +11,6 @@ struct Counters {
     dropped: u32,
     // Pixels with at least one fragment.
     pixels_with_hair: atomic<u32>,
-    unused: u32,
 }
 
 // Smaller is nearer. `nearness` is positive, so that its bits are in its order.

@@ -35,10 +35,3 @@ fn scatter(fibre: Fibre, eye: vec3<f32>, light: vec3<f32>) -> vec3<f32> {
     let secondary = lobe(highlight(along_light, along_eye, -3.0 * fibre.tilt), fibre.secondary);
     return fibre.albedo * (fibre.diffuse * perpendicular(along_light) + secondary) + primary;
 }
-
-// How much light arrives where hair faces `normal`: `strength` says how much its far side darkens, in place of the shadow
-// that hair casts on itself.
-fn form(strength: f32, normal: vec3<f32>, light: vec3<f32>) -> f32 {
-    let wrapped = saturate((dot(normal, light) + 0.4) / 1.4);
-    return mix(1.0, wrapped, strength);
-}

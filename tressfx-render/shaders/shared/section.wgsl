@@ -2,8 +2,6 @@
 
 struct Section {
     pose: mat4x4<f32>,
-    // Middle of the roots, in the space of the positions.
-    center: vec4<f32>,
     // Colour and opacity at the root and at the tip.
     base: vec4<f32>,
     tip: vec4<f32>,
@@ -30,7 +28,7 @@ struct Section {
 fn hash(seed: u32) -> f32 {
     let state = seed * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return f32(((word >> 22u) ^ word) >> 8u) * 0x1p-24;
+    return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
 }
 
 // A number in [-1, 1) for a strand, half of which it shares with the strands that follow the same guide.

@@ -15,6 +15,7 @@ const SOURCE: ShaderSource = ShaderSource {
 
 pub(crate) fn tangents(backend: &mut dyn Backend, buffers: &SectionBuffers) -> Result<Pass> {
     let shape = &buffers.strands.shape;
-    let resources = [("positions", buffers.strands.positions.into()), ("tangents", buffers.strands.tangents.into())];
+    let resources =
+        [("positions", buffers.strands.positions.into()), ("strand_tangents", buffers.strands.tangents.into())];
     Pass::new(backend, &SOURCE, &counts(shape), &resources, shape.strand_vertices())
 }

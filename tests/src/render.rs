@@ -1,0 +1,276 @@
+//! Small grooms, a small screen, and pictures that can be held against their f64 references.
+
+use glam::{DVec4, Vec3};
+use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
+use tressfx_core::id::TextureId;
+use tressfx_core::mesh::Mesh;
+use tressfx_core::pass::{Load, PassList, RasterPass};
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
+    SectionDraw, StrandInfo, Surface, Targets, gpu, reference,
+};
+
+/// Strands without follow strands, in the order of the GPU.
+#[derive(Clone, Debug)]
+pub struct Groom {
+    /// Counts.
+    pub shape: StrandShape,
+    /// Positions.
+    pub positions: Vec<[f32; 4]>,
+    /// Tangents.
+    pub tangents: Vec<[f32; 4]>,
+    /// Shares of the full width.
+    pub thickness: Vec<f32>,
+    /// What rendering asks for beside.
+    pub info: StrandInfo,
+    /// Its look.
+    pub material: Material,
+    /// Where it is moved to.
+    pub pose: Pose,
+}
+
+impl Groom {
+    /// A groom of strands of one length each, in metres, of full width everywhere.
+    pub fn new(strands: &[Vec<Vec3>], material: Material) -> Self {
+        let vertices = strands.first().map_or(2, Vec::len);
+        let shape = StrandShape { guides: strands.len() as u32, follows: 0, vertices: vertices as u32 };
+        let order = (0..vertices).flat_map(|vertex| strands.iter().map(move |strand| (strand, vertex)));
+        let tangent = |strand: &[Vec3], vertex: usize| {
+            let (before, after) = (strand[vertex.saturating_sub(1)], strand[(vertex + 1).min(vertices - 1)]);
+            (after - before).normalize_or(Vec3::Y)
+        };
+        let segments = strands.iter().flat_map(|strand| strand.windows(2));
+        Self {
+            shape,
+            positions: order.clone().map(|(strand, vertex)| strand[vertex].extend(1.0).to_array()).collect(),
+            tangents: order.clone().map(|(strand, vertex)| tangent(strand, vertex).extend(0.0).to_array()).collect(),
+            thickness: order.map(|_| 1.0).collect(),
+            info: StrandInfo {
+                metres_per_unit: 1.0,
+                fitting_radius: 0.000_1,
+                openness: openness(strands.len() * vertices),
+                sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
+            },
+            material,
+            pose: Pose::IDENTITY,
+        }
+    }
+
+    /// Wavy strands that hang from a disc, tapered, the same for the same seed.
+    pub fn wavy(strands: u32, vertices: u32, seed: u32, material: Material) -> Self {
+        let mut random = Random(seed);
+        let mut strand = |_| {
+            let root = Vec3::new(random.unit() - 0.5, 0.6, random.unit() - 0.5);
+            let (phase, swing) = (random.unit() * 6.3, 0.05 + 0.1 * random.unit());
+            let point = |i: u32| {
+                let s = i as f32 / (vertices - 1) as f32;
+                root + Vec3::new((phase + 7.0 * s).sin() * swing, -1.2 * s, (phase + 5.0 * s).cos() * swing)
+            };
+            (0..vertices).map(point).collect()
+        };
+        let mut groom = Self::new(&(0..strands).map(&mut strand).collect::<Vec<_>>(), material);
+        let taper = |i: usize| (1.0 - (i as u32 / strands) as f32 / (vertices - 1) as f32).sqrt();
+        (0..groom.thickness.len()).for_each(|i| groom.thickness[i] = taper(i));
+        groom
+    }
+
+    /// As the references take it.
+    pub fn reference(&self) -> reference::Section<'_> {
+        reference::Section {
+            uniform: gpu::Section::new(self.shape, &self.info, &self.material, &self.pose),
+            positions: &self.positions,
+            tangents: &self.tangents,
+            openness: &self.info.openness,
+            thickness: &self.thickness,
+        }
+    }
+}
+
+/// Some light from everywhere, differently for each vertex.
+fn openness(count: usize) -> Vec<[f32; 4]> {
+    let mut random = Random(77);
+    let mut value = || 0.6 * random.unit() - 0.3;
+    (0..count).map(|_| [value(), value(), value(), 0.6 + value()]).collect()
+}
+
+/// Numbers in [0, 1) that are the same everywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Random(pub u32);
+
+impl Random {
+    /// The next one (Marsaglia's xorshift over a Weyl sequence).
+    pub fn unit(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9);
+        let mut x = self.0 ^ (self.0 >> 15);
+        x = x.wrapping_mul(0x85eb_ca6b);
+        x = (x ^ (x >> 13)).wrapping_mul(0xc2b2_ae35);
+        ((x ^ (x >> 16)) >> 8) as f32 / (1 << 24) as f32
+    }
+}
+
+/// A picture that came back.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// The texels as they were read back.
+    pub bytes: Vec<u8>,
+    /// What was counted.
+    pub counters: Counters,
+}
+
+impl Picture {
+    /// The texels, row by row.
+    pub fn pixels(&self) -> Vec<DVec4> {
+        let channel = |pair: &[u8]| half::f16::from_le_bytes([pair[0], pair[1]]).to_f64();
+        let texel = |bytes: &[u8]| DVec4::from_array([0, 2, 4, 6].map(|i| channel(&bytes[i..])));
+        self.bytes.chunks(8).map(texel).collect()
+    }
+
+    /// How far it is from a reference.
+    pub fn difference(&self, reference: &[DVec4]) -> Difference {
+        Difference::between(&self.pixels(), reference)
+    }
+}
+
+/// How far two pictures are apart, over the four channels of all pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Difference {
+    /// The largest difference of a channel.
+    pub max: f64,
+    /// Peak signal-to-noise ratio in decibels, for a peak of 1.
+    pub psnr: f64,
+}
+
+impl Difference {
+    /// Between two pictures of one size.
+    pub fn between(a: &[DVec4], b: &[DVec4]) -> Self {
+        assert_eq!(a.len(), b.len());
+        let differences = || a.iter().zip(b).map(|(a, b)| (*a - *b).abs());
+        let square = differences().map(|d| d.length_squared()).sum::<f64>() / (4 * a.len()) as f64;
+        Self { max: differences().map(DVec4::max_element).fold(0.0, f64::max), psnr: -10.0 * square.log10() }
+    }
+}
+
+/// A screen to draw on.
+#[derive(Debug)]
+pub struct Stage {
+    /// The GPU.
+    pub backend: WgpuBackend,
+    /// The camera.
+    pub view: View,
+    /// The light.
+    pub lights: Lights,
+    /// What is under test.
+    pub renderer: HairRenderer,
+    /// Whether the pool of fragments may grow to what is predicted.
+    pub may_grow: bool,
+    color: TextureId,
+    depth: TextureId,
+}
+
+impl Stage {
+    /// A screen of 96 x 64 pixels that looks along -z at the origin from a distance of 3; `None` as [`crate::gpu`].
+    pub fn new(change: impl FnOnce(&mut RenderDesc, &mut View)) -> Option<Self> {
+        let mut backend = crate::gpu()?;
+        let mut view = View {
+            eye: Vec3::new(0.0, 0.0, 3.0),
+            target: Vec3::ZERO,
+            fov: 0.6,
+            near: 0.05,
+            far: 50.0,
+            size: [96, 64],
+            depth: DepthOrder::Reverse,
+        };
+        let mut desc = RenderDesc::new(view.size, Format::Rgba16F);
+        change(&mut desc, &mut view);
+        desc.size = view.size;
+        let renderer = HairRenderer::new(&mut backend, &desc).expect("a renderer");
+        let mut texture =
+            |label, format| backend.create_texture(&TextureDesc { label, size: view.size, format }).expect("a texture");
+        let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
+        Some(Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth })
+    }
+
+    /// What the shaders are given.
+    pub fn frame(&self) -> gpu::Frame {
+        gpu::Frame::new(&self.view, &self.lights, self.renderer.capacity())
+    }
+
+    /// What is drawn to.
+    pub fn targets(&self) -> Targets {
+        Targets { color: self.color, depth: self.depth }
+    }
+
+    /// Uploads a groom with the next run of `list`.
+    pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> Section {
+        let buffers = StrandBuffers::new(&mut self.backend, groom.shape).expect("buffers");
+        list.upload(buffers.positions, 0, &groom.positions);
+        list.upload(buffers.tangents, 0, &groom.tangents);
+        list.upload(buffers.thickness, 0, &groom.thickness);
+        Section::new(&mut self.backend, list, buffers, groom.info.clone()).expect("a section")
+    }
+
+    /// Hair over nothing.
+    pub fn hair(&mut self, grooms: &[&Groom]) -> Picture {
+        let mut list = PassList::new();
+        list.raster(RasterPass {
+            label: "test.clear",
+            colors: vec![(self.color, Load::Clear([0.0; 4]))],
+            depth: Some((self.depth, Load::Clear(self.view.depth.far()))),
+            draws: Vec::new(),
+        });
+        self.over(list, grooms)
+    }
+
+    /// Hair and meshes.
+    pub fn scene(&mut self, meshes: &[(&Mesh, Surface)], grooms: &[&Groom]) -> Picture {
+        let mut list = PassList::new();
+        let pass = ScenePass::new(&mut self.backend, Format::Rgba16F, self.view.depth).expect("a scene pass");
+        let made: Vec<_> = meshes
+            .iter()
+            .map(|(mesh, _)| SceneMesh::new(&mut self.backend, &mut list, mesh).expect("a mesh"))
+            .collect();
+        let draws: Vec<_> = made
+            .iter()
+            .zip(meshes)
+            .map(|(mesh, (_, surface))| MeshDraw { mesh, surface: *surface, pose: Pose::IDENTITY })
+            .collect();
+        pass.draw(&mut list, &self.view, &self.lights, &self.targets(), &Backdrop::default(), &draws);
+        self.over(list, grooms)
+    }
+
+    /// Bytes that the backend holds.
+    pub fn backend_memory(&self) -> u64 {
+        self.backend.memory().bytes
+    }
+
+    /// The depth of the last scene.
+    pub fn depth(&mut self) -> Vec<f32> {
+        let mut list = PassList::new();
+        let ticket = list.read_texture(self.depth);
+        bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut self.backend, &list, ticket))
+    }
+
+    fn over(&mut self, mut list: PassList, grooms: &[&Groom]) -> Picture {
+        let sections: Vec<_> = grooms.iter().map(|groom| self.section(&mut list, groom)).collect();
+        let draws: Vec<_> = sections
+            .iter()
+            .zip(grooms)
+            .map(|(section, groom)| SectionDraw { section, material: &groom.material, pose: groom.pose })
+            .collect();
+        if self.may_grow {
+            self.renderer.reserve(&mut self.backend, &self.view, &draws).expect("a pool");
+        }
+        self.renderer.draw(&mut list, &self.view, &self.lights, &self.targets(), &draws);
+        let counters = self.renderer.read_counters(&mut list);
+        let picture = list.read_texture(self.color);
+        let bytes = crate::run_and_read(&mut self.backend, &list, picture);
+        let counters = Counters::from_bytes(&self.backend.read(counters).expect("it has run"));
+        sections.into_iter().for_each(|section| section.destroy(&mut self.backend));
+        Picture { size: self.view.size, bytes, counters }
+    }
+}

@@ -1,0 +1,223 @@
+//! How much light reaches each vertex of a groom, and from where: a first-order description of the shadow that the rest
+//! pose casts on itself, made once on the CPU and carried along by the strands as they move.
+//!
+//! The groom is put into a grid as an absorbing medium, with the skin under its roots. Light is followed through the grid
+//! along the 26 directions between neighbouring cells, and the share that arrives, as a function of its direction, is
+//! reduced to a constant and a vector, as in first-order spherical harmonics. The vector is kept in a frame of the strand
+//! (its tangent, the way that it grows out of the skin), so that it turns with the strand.
+
+use glam::{IVec3, Vec3, Vec4};
+use tressfx_core::strands::{Bounds, Strands};
+
+/// Cells along the longest side of the groom.
+const CELLS: f32 = 56.0;
+
+/// Hair scatters most light onwards: the share of what a strand covers that is taken away.
+const ABSORPTION: f32 = 0.3;
+
+/// Guides that are put into the grid: any prefix of them is an even sample.
+const MAX_GUIDES: usize = 40_000;
+
+/// Cells around the groom: room for the skin.
+const MARGIN: i32 = 8;
+
+/// Largest radius of the balls that the skin is made of, in cells.
+const MAX_SKIN: f32 = 3.0;
+
+/// Optical depth of a cell within the skin.
+const SKIN: f32 = 6.0;
+
+/// Weights of Lebedev's 26 points on a sphere: those of the axes, of the edges and of the corners of a cube.
+const WEIGHTS: [f32; 3] = [1.0 / 21.0, 4.0 / 105.0, 9.0 / 280.0];
+
+/// For each vertex of the guides, strand-major: in the frame of [`crate::StrandInfo::openness`]. `radius` is that of a fibre in
+/// the unit of the file.
+pub(crate) fn openness(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
+    let mut grid = Grid::around(strands);
+    grid.add_hair(strands, radius);
+    grid.add_skin(strands);
+    let light = grid.light();
+    let vertices = strands.vertices as usize;
+    let local = |i: usize| {
+        let [constant, vector] = grid.sample(&light, strands.rest[i].truncate());
+        in_frame(constant.w, vector.truncate(), strands.tangents[i].truncate(), strands.root_directions[i / vertices])
+    };
+    (0..strands.rest.len()).map(local).collect()
+}
+
+/// The vector in the frame of a strand: along the tangent, across it towards `growth`, and across both.
+fn in_frame(constant: f32, vector: Vec3, tangent: Vec3, growth: Vec3) -> [f32; 4] {
+    let across = (growth - tangent * growth.dot(tangent)).normalize_or_zero();
+    [vector.dot(tangent), vector.dot(across), vector.dot(tangent.cross(across)), constant]
+}
+
+/// Cubic cells with what they absorb on the way through.
+struct Grid {
+    origin: Vec3,
+    cell: f32,
+    size: IVec3,
+    /// Optical depth per cell.
+    depth: Vec<f32>,
+}
+
+impl Grid {
+    fn around(strands: &Strands) -> Self {
+        let extent = strands.bounds.max - strands.bounds.min;
+        let cell = (extent.max_element() / CELLS).max(f32::MIN_POSITIVE);
+        let size = (extent / cell).ceil().as_ivec3() + 2 * MARGIN;
+        let depth = vec![0.0; (size.x * size.y * size.z) as usize];
+        Self { origin: strands.bounds.min - MARGIN as f32 * cell, cell, size, depth }
+    }
+
+    fn index(&self, at: IVec3) -> Option<usize> {
+        let inside = at.cmpge(IVec3::ZERO).all() && at.cmplt(self.size).all();
+        inside.then(|| ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize)
+    }
+
+    /// The eight cells around a point and their shares.
+    fn around_point(&self, point: Vec3) -> impl Iterator<Item = (usize, f32)> {
+        let at = (point - self.origin) / self.cell - 0.5;
+        let (low, share) = (at.floor().as_ivec3(), at - at.floor());
+        (0..8).filter_map(move |corner: i32| {
+            let step = IVec3::new(corner & 1, corner >> 1 & 1, corner >> 2);
+            let weights = Vec3::select(step.cmpeq(IVec3::ONE), share, 1.0 - share);
+            Some((self.index(low + step)?, weights.element_product()))
+        })
+    }
+
+    /// Adds what strands cover: their width times their length, seen from everywhere (pi/4 of it), as a share of the side of
+    /// a cell.
+    fn add_hair(&mut self, strands: &Strands, radius: f32) {
+        let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
+        let used = guides.min(MAX_GUIDES);
+        let stands_for = (1 + strands.follows) as f32 * guides as f32 / used.max(1) as f32;
+        let cover = std::f32::consts::FRAC_PI_2 * radius * stands_for * ABSORPTION / (self.cell * self.cell);
+        for strand in strands.rest.chunks(vertices).take(used) {
+            for ends in strand.windows(2) {
+                let [a, b] = [ends[0].truncate(), ends[1].truncate()];
+                let steps = (a.distance(b) / (0.5 * self.cell)).ceil().clamp(1.0, 256.0);
+                let each = cover * a.distance(b) / steps;
+                for step in 0..steps as u32 {
+                    let point = a.lerp(b, (step as f32 + 0.5) / steps);
+                    let cells: Vec<_> = self.around_point(point).collect();
+                    cells.into_iter().for_each(|(cell, share)| self.depth[cell] += each * share);
+                }
+            }
+        }
+    }
+
+    /// Adds a ball behind each root, as large as the roots are apart, so that together they are a skin without holes.
+    fn add_skin(&mut self, strands: &Strands) {
+        let roots = strands.rest.iter().step_by(strands.vertices as usize).map(|root| root.truncate());
+        let extent = Bounds::of(roots.clone()).max - Bounds::of(roots.clone()).min;
+        let area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
+        let spacing = (area / strands.guides.max(1) as f32).sqrt();
+        let radius = (spacing / self.cell).clamp(1.0, MAX_SKIN);
+        let reach = radius.ceil() as i32;
+        let ball: Vec<IVec3> = (-reach..=reach)
+            .flat_map(|z| (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| IVec3::new(x, y, z))))
+            .filter(|step| step.as_vec3().length() <= radius)
+            .collect();
+        for (root, direction) in roots.zip(&strands.root_directions).take(MAX_GUIDES) {
+            let middle = root - *direction * self.cell * (radius + 1.0);
+            let at = ((middle - self.origin) / self.cell).floor().as_ivec3();
+            for cell in ball.iter().filter_map(|&step| self.index(at + step)).collect::<Vec<_>>() {
+                self.depth[cell] = self.depth[cell].max(SKIN);
+            }
+        }
+    }
+
+    /// For each cell the light that arrives, of unit light from everywhere: `[0, 0, 0, constant]` and the vector.
+    fn light(&self) -> Vec<[Vec4; 2]> {
+        let mut light = vec![[Vec4::ZERO; 2]; self.depth.len()];
+        let mut passed = vec![0.0f32; self.depth.len()];
+        let steps = (0..27).map(|i| IVec3::new(i % 3, i / 3 % 3, i / 9) - 1).filter(|&step| step != IVec3::ZERO);
+        for step in steps {
+            let weight = WEIGHTS[step.abs().element_sum() as usize - 1];
+            let towards = -step.as_vec3().normalize();
+            let length = step.as_vec3().length();
+            self.sweep(step, |at, before| {
+                passed[at] = before.map_or(0.0, |b| passed[b] + 0.5 * (self.depth[b] + self.depth[at]) * length);
+                let arriving = weight * (-passed[at]).exp();
+                light[at][0].w += arriving;
+                light[at][1] += (3.0 * arriving * towards).extend(0.0);
+            });
+        }
+        light
+    }
+
+    /// Visits all cells so that the one before it along `step` comes first.
+    fn sweep(&self, step: IVec3, mut visit: impl FnMut(usize, Option<usize>)) {
+        let along = |size: i32, step: i32, i: i32| if step < 0 { size - 1 - i } else { i };
+        for z in 0..self.size.z {
+            for y in 0..self.size.y {
+                for x in 0..self.size.x {
+                    let [x, y, z] = [0, 1, 2].map(|axis| along(self.size[axis], step[axis], [x, y, z][axis]));
+                    let at = IVec3::new(x, y, z);
+                    if let Some(cell) = self.index(at) {
+                        visit(cell, self.index(at - step));
+                    }
+                }
+            }
+        }
+    }
+
+    fn sample(&self, light: &[[Vec4; 2]], point: Vec3) -> [Vec4; 2] {
+        self.around_point(point).fold([Vec4::ZERO; 2], |[constant, vector], (cell, share)| {
+            [constant + light[cell][0] * share, vector + light[cell][1] * share]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::asset::{AssetFormat, HairAsset};
+    use tressfx_core::strands::StrandOptions;
+
+    use super::*;
+
+    /// Straight strands that stand on the square 0..1 x 0..1 and reach to the height 1.
+    fn brush(per_side: u32) -> Strands {
+        let place = |i: u32| (i as f32 + 0.5) / per_side as f32;
+        let strands = (0..per_side * per_side).map(|i| (place(i % per_side), place(i / per_side)));
+        let points = strands.flat_map(|(x, z)| (0..16).map(move |i| [x, i as f32 / 15.0, z])).collect();
+        let asset = HairAsset::new("brush", AssetFormat::Builtin, points, vec![16; (per_side * per_side) as usize]);
+        Strands::new(&asset, &StrandOptions { shuffle: false, ..StrandOptions::default() }).unwrap()
+    }
+
+    fn at(strands: &Strands, openness: &[[f32; 4]], strand: usize, vertex: usize) -> [f32; 4] {
+        openness[strand * strands.vertices as usize + vertex]
+    }
+
+    #[test]
+    fn light_reaches_tips_and_edges_and_not_the_roots_in_the_middle() {
+        let strands = brush(20);
+        let openness = openness(&strands, 0.02);
+        let (middle, edge) = (10 * 20 + 10, 10 * 20);
+        let [root, tip] = [1, 15].map(|vertex| at(&strands, &openness, middle, vertex));
+        assert!(tip[3] > 0.35 && tip[3] < 0.7, "half of the sky is open: {tip:?}");
+        assert!(root[3] < 0.5 * tip[3], "{root:?}");
+        assert!(tip[0] > 0.3, "from along the strand: {tip:?}");
+        assert!(at(&strands, &openness, edge, 8)[3] > 1.5 * at(&strands, &openness, middle, 8)[3]);
+        assert!(openness.iter().flatten().all(|x| x.is_finite() && x.abs() <= 1.6));
+    }
+
+    #[test]
+    fn a_single_strand_is_lit_from_everywhere_but_the_skin() {
+        let strands = brush(1);
+        let openness = openness(&strands, 1e-5);
+        let tip = at(&strands, &openness, 0, 15);
+        assert!(tip[3] > 0.9 && tip[0].abs() < 0.2, "{tip:?}");
+    }
+
+    #[test]
+    fn the_frame_gives_the_vector_back() {
+        let (tangent, growth) = (Vec3::new(0.0, -0.8, 0.6), Vec3::Z);
+        let vector = Vec3::new(0.3, -0.2, 0.5);
+        let [a, b, c, constant] = in_frame(0.7, vector, tangent, growth);
+        let across = (growth - tangent * growth.dot(tangent)).normalize();
+        let back = tangent * a + across * b + tangent.cross(across) * c;
+        assert!(back.distance(vector) < 1e-6 && constant == 0.7);
+        assert_eq!(in_frame(0.7, vector, Vec3::Z, growth), [0.5, 0.0, 0.0, 0.7]);
+    }
+}

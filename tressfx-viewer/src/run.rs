@@ -1,0 +1,159 @@
+//! A simulation that goes on frame by frame: what `render` and `simulate` share.
+
+use anyhow::{Context, Result};
+use glam::Vec4;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_core::backend::Backend;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::view::Pose;
+use tressfx_sim::metrics::{self, EdgeError};
+use tressfx_sim::{HairSim, SectionDesc, StepInput, Wind};
+
+use crate::cli::{self, BackendName};
+use crate::groom::Groom;
+use crate::motion;
+use crate::params::Params;
+use crate::stats::{GroomStats, PassTimes, RenderStats, SimStats, Stats};
+
+/// A groom on its way through time.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) groom: Groom,
+    pub(crate) params: Params,
+    pub(crate) backend: WgpuBackend,
+    pub(crate) sim: HairSim,
+    pub(crate) times: PassTimes,
+    /// Frames that were simulated.
+    frame: u32,
+    wind: Option<Wind>,
+}
+
+impl Run {
+    pub(crate) fn new(args: &cli::Scene) -> Result<Self> {
+        let groom = Groom::load(&args.grooms, args.follow)?;
+        let params = Params::read(args.params.as_deref(), groom.sections.len())?;
+        let mut backend = match args.backend {
+            BackendName::Wgpu => WgpuBackend::headless_on(args.adapter.as_deref())?,
+        };
+        let sections: Vec<_> = groom
+            .sections
+            .iter()
+            .enumerate()
+            .map(|(index, strands)| SectionDesc { strands, params: params.sim(index).clone() })
+            .collect();
+        let capsules = [&groom.capsules[..], &params.capsule].concat();
+        let mut sim = HairSim::new(&mut backend, &sections, &capsules)?;
+        sim.set_clock_params(params.clock)?;
+        let wind = match (args.wind, params.wind) {
+            (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
+            (Some(velocity), None) => Some(Wind::new(velocity)),
+            (None, wind) => wind,
+        };
+        Ok(Self { groom, params, backend, sim, times: PassTimes::default(), frame: 0, wind })
+    }
+
+    /// Records the next frame of the simulation.
+    pub(crate) fn step(&mut self, args: &cli::Scene) -> Result<PassList> {
+        self.frame += 1;
+        let head = self.head(args);
+        let mut list = PassList::new();
+        self.sim.step(&mut list, &StepInput { dt: 1.0 / args.fps, head, wind: self.wind })?;
+        Ok(list)
+    }
+
+    /// Where the head is in the frame that was recorded last.
+    pub(crate) fn head(&self, args: &cli::Scene) -> Pose {
+        motion::head(args.motion, f64::from(self.frame) / args.fps, &self.groom.bounds())
+    }
+
+    /// Runs a list and keeps the times of its passes.
+    pub(crate) fn submit(&mut self, list: &PassList) -> Result<()> {
+        self.backend.run(list)?;
+        let timings = self.backend.timings();
+        self.times.add(&timings);
+        Ok(())
+    }
+
+    /// What a read-back of the list that was just run brought.
+    pub(crate) fn fetch(&mut self, ticket: Ticket) -> Result<Vec<u8>> {
+        self.backend.read(ticket).context("the list has run, but a read-back is missing")
+    }
+
+    /// Positions of all strands of each section, strand-major.
+    pub(crate) fn pose(&mut self) -> Result<Vec<Vec<Vec4>>> {
+        let mut list = PassList::new();
+        let tickets = self.sim.read_positions(&mut list);
+        self.backend.run(&list)?;
+        let mut poses = Vec::new();
+        for (section, ticket) in tickets.into_iter().enumerate() {
+            let positions: Vec<Vec4> = bytemuck::pod_collect_to_vec(&self.fetch(ticket)?);
+            poses.push(self.groom.sections[section].deinterleave(&positions));
+        }
+        Ok(poses)
+    }
+
+    /// Everything that is known about the run so far.
+    pub(crate) fn stats(&mut self, render: RenderStats) -> Result<Stats> {
+        let sim = self.sim_stats()?;
+        Ok(Stats {
+            groom: GroomStats { strands: self.groom.strands(), vertices: self.groom.vertices() },
+            backend: "wgpu",
+            adapter: self.backend.caps().adapter.clone(),
+            frames: self.frame,
+            passes: self.times.summary(),
+            sim,
+            render: RenderStats { peak_gpu_bytes: self.backend.memory().peak, ..render },
+        })
+    }
+
+    fn sim_stats(&mut self) -> Result<SimStats> {
+        let mut list = PassList::new();
+        let ticket = self.sim.read_non_finite(&mut list);
+        self.backend.run(&list)?;
+        let reset_strands: Vec<u32> = bytemuck::pod_collect_to_vec(&self.fetch(ticket)?);
+        let poses = self.pose()?;
+        let mut error = EdgeError::default();
+        let mut bad = 0;
+        for (strands, pose) in self.groom.sections.iter().zip(&poses) {
+            error = error.with(metrics::edge_error(strands, pose));
+            bad += metrics::non_finite(pose) as u64;
+        }
+        Ok(SimStats {
+            max_edge_error: error.max,
+            rms_edge_error: error.rms,
+            non_finite: bad + u64::from(reset_strands[0]),
+            // The first puts the strands where they begin.
+            resets: self.sim.resets().saturating_sub(1),
+        })
+    }
+}
+
+/// A bar that shows up once its work has taken a second.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    begun: Instant,
+}
+
+impl Progress {
+    pub(crate) fn new(frames: u32) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(u64::from(frames)), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template("{bar:40} frame {pos} of {len}, {eta} left");
+        Self { bar: bar.with_style(style.expect("the template is fixed")), begun: Instant::now() }
+    }
+
+    pub(crate) fn advance(&self) {
+        if self.bar.is_hidden() && self.begun.elapsed() > Duration::from_secs(1) {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

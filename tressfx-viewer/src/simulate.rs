@@ -1,0 +1,53 @@
+//! `tressfx simulate`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use tressfx_core::asset::{self, WriteFormat};
+
+use crate::cli::Simulate;
+use crate::passes;
+use crate::run::{Progress, Run};
+use crate::stats::RenderStats;
+
+/// Simulates all frames and writes the pose that they end in.
+pub(crate) fn run(args: &Simulate) -> Result<()> {
+    let mut run = Run::new(&args.scene)?;
+    let names: Vec<String> = run.groom.sections.iter().map(|section| section.name.clone()).collect();
+    let files = files(&args.out, &names)?;
+    let progress = Progress::new(args.scene.frames);
+    for frame in 0..args.scene.frames {
+        let list = run.step(&args.scene)?;
+        if args.scene.print_passes && frame == 0 {
+            println!("{}", passes::table(&list));
+        }
+        run.submit(&list)?;
+        progress.advance();
+    }
+    drop(progress);
+    let poses = run.pose()?;
+    for ((strands, pose), file) in run.groom.sections.iter().zip(&poses).zip(&files) {
+        asset::write(file, &strands.pose_asset(pose, args.all)?, Some(WriteFormat::TressFx4))?;
+    }
+    match &args.scene.stats {
+        Some(path) => run.stats(RenderStats::default())?.write(path),
+        None => Ok(()),
+    }
+}
+
+/// One file a section.
+fn files(out: &Path, names: &[String]) -> Result<Vec<PathBuf>> {
+    let is_folder = out.to_string_lossy().ends_with(['/', '\\']) || out.is_dir();
+    if !is_folder && names.len() > 1 {
+        bail!("{}: {} grooms are written into a folder, whose name ends in /", out.display(), names.len());
+    }
+    if !is_folder {
+        return Ok(vec![out.to_owned()]);
+    }
+    std::fs::create_dir_all(out).with_context(|| out.display().to_string())?;
+    let stem = |name: &String| {
+        let name = name.replace([':', '/', '\\'], "_");
+        Path::new(&name).file_stem().map_or(name.clone(), |stem| stem.to_string_lossy().into_owned())
+    };
+    Ok(names.iter().enumerate().map(|(index, name)| out.join(format!("{index}_{}.tfx", stem(name)))).collect())
+}

@@ -1,0 +1,96 @@
+//! Where pictures are taken: targets, lights, backdrop, the mesh that hair grows on, and the renderer.
+
+use anyhow::Result;
+use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::mesh::Mesh;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
+    SectionDraw, StrandInfo, Surface, Targets,
+};
+
+use crate::cli::{self, Render};
+use crate::run::Run;
+use crate::stats::RenderStats;
+
+const TARGET: Format = Format::Rgba16F;
+
+/// Everything that a picture is taken with.
+#[derive(Debug)]
+pub(crate) struct Studio {
+    pub(crate) targets: Targets,
+    /// What the newest frame drew.
+    pub(crate) drawn: RenderStats,
+    view: View,
+    lights: Lights,
+    scene: ScenePass,
+    meshes: Vec<SceneMesh>,
+    sections: Vec<(Section, Material)>,
+    renderer: HairRenderer,
+}
+
+impl Studio {
+    pub(crate) fn new(run: &mut Run, args: &Render, mesh: Option<Mesh>) -> Result<Self> {
+        let view = args.camera.view(&run.groom.rest(), args.size);
+        let backend = &mut run.backend;
+        let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size: args.size, format });
+        let targets = Targets { color: texture("picture", TARGET)?, depth: texture("depth", Format::Depth32F)? };
+        let mut uploads = PassList::new();
+        let meshes = mesh
+            .iter()
+            .chain(&run.groom.mesh)
+            .map(|mesh| SceneMesh::new(backend, &mut uploads, mesh))
+            .collect::<Result<_, _>>()?;
+        let mut sections = Vec::new();
+        for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
+            let section = Section::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
+            sections.push((section, *run.params.material(index)));
+        }
+        let mut renderer = HairRenderer::new(backend, &RenderDesc { k: args.k, ..RenderDesc::new(args.size, TARGET) })?;
+        renderer.reserve(backend, &view, &draws(&sections, Pose::IDENTITY))?;
+        let scene = ScenePass::new(backend, TARGET, view.depth)?;
+        backend.run(&uploads)?;
+        let (lights, drawn) = (Lights::default(), RenderStats::default());
+        Ok(Self { targets, drawn, view, lights, scene, meshes, sections, renderer })
+    }
+
+    /// Records a picture with the head at `head`; the strands are moved by `lead`, see `HairSim::head_lead`.
+    pub(crate) fn draw(&self, list: &mut PassList, head: Pose, lead: Pose) -> Ticket {
+        let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
+        let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
+        let Self { view, lights, targets, .. } = self;
+        self.scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
+        self.renderer.draw(list, view, lights, targets, &draws(&self.sections, lead));
+        self.renderer.read_counters(list)
+    }
+
+    /// Reads the counters of the frame that was just drawn and makes room where there was too little. Says whether the
+    /// frame would now be drawn with fewer fragments dropped.
+    pub(crate) fn take_stock(&mut self, run: &mut Run, counters: Ticket) -> Result<bool> {
+        let counters = Counters::from_bytes(&run.fetch(counters)?);
+        self.drawn = RenderStats {
+            fragments: u64::from(counters.fragments),
+            dropped: u64::from(counters.dropped),
+            pixels_with_hair: u64::from(counters.pixels_with_hair),
+            peak_gpu_bytes: 0,
+        };
+        let before = self.renderer.capacity();
+        self.renderer.observe(&mut run.backend, &counters)?;
+        Ok(self.renderer.capacity() > before)
+    }
+
+    /// Draws the newest frame once more, and brings the picture.
+    pub(crate) fn retake(&mut self, run: &mut Run, args: &cli::Scene) -> Result<Vec<u8>> {
+        let mut list = PassList::new();
+        let counters = self.draw(&mut list, run.head(args), run.sim.head_lead());
+        let picture = list.read_texture(self.targets.color);
+        run.submit(&list)?;
+        self.take_stock(run, counters)?;
+        run.fetch(picture)
+    }
+}
+
+fn draws(sections: &[(Section, Material)], pose: Pose) -> Vec<SectionDraw<'_>> {
+    sections.iter().map(|(section, material)| SectionDraw { section, material, pose }).collect()
+}

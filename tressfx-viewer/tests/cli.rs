@@ -1,0 +1,144 @@
+//! The program as its users call it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of its own for each test, in cargo's folder for such things.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn tressfx(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_tressfx")).current_dir(folder).args(words).output().unwrap()
+}
+
+fn passes(folder: &Path, words: &[&str]) -> String {
+    let output = tressfx(folder, words);
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The message of a call that must fail, and its exit code.
+fn fails(folder: &Path, words: &[&str]) -> (String, i32) {
+    let output = tressfx(folder, words);
+    assert!(!output.status.success(), "{words:?} must fail");
+    (String::from_utf8(output.stderr).unwrap(), output.status.code().unwrap())
+}
+
+const SMALL: [&str; 6] = ["builtin:wavy:60:12", "--frames", "8", "--motion", "shake", "--wind=2,0,1"];
+
+fn render(folder: &Path, extra: &[&str]) -> String {
+    passes(folder, &[&["render"], &SMALL[..], &["--size", "160x90"], extra].concat())
+}
+
+#[test]
+fn info_says_what_is_there_as_text_and_as_json() {
+    let folder = folder("info");
+    let text = passes(&folder, &["info", "builtin:fur:70:5"]);
+    assert!(text.contains("strands    70") && text.contains("vertices   350 (5 a strand"), "{text}");
+    let json: Value = serde_json::from_str(&passes(&folder, &["info", "--json", "builtin:fur:70:5"])).unwrap();
+    assert_eq!((&json[0]["strands"], &json[0]["vertices"]), (&70.into(), &350.into()));
+}
+
+#[test]
+fn convert_goes_there_and_back_without_a_change() {
+    let folder = folder("convert");
+    passes(&folder, &["convert", "builtin:curly:30:16", "a.tfx"]);
+    passes(&folder, &["convert", "a.tfx", "b.txt"]);
+    passes(&folder, &["convert", "b.txt", "c.txt"]);
+    passes(&folder, &["convert", "a.tfx", "d.tfx"]);
+    let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert!(read("a.tfx") == read("d.tfx"));
+    assert!(read("b.txt") == read("c.txt"));
+    let (message, _) = fails(&folder, &["convert", "a.tfx", "a.fbx"]);
+    assert!(message.contains(".tfx or .txt"), "{message}");
+}
+
+#[test]
+fn bad_files_are_refused_with_file_place_and_field() {
+    let folder = folder("bad_files");
+    passes(&folder, &["convert", "builtin:curly:30:16", "whole.tfx"]);
+    let whole = std::fs::read(folder.join("whole.tfx")).unwrap();
+    std::fs::write(folder.join("cut.tfx"), &whole[..whole.len() / 2]).unwrap();
+    let (message, code) = fails(&folder, &["info", "cut.tfx"]);
+    assert!(message.contains("cut.tfx: positions (byte 160)"), "{message}");
+    assert_eq!(code, 1);
+    std::fs::write(folder.join("noise.tfx"), b"\x89PNG nothing of the kind").unwrap();
+    assert!(fails(&folder, &["render", "noise.tfx", "--out", "x.png"]).0.contains("noise.tfx"));
+    assert!(fails(&folder, &["info", "absent.tfx"]).0.contains("absent.tfx"));
+}
+
+#[test]
+fn bad_words_are_refused_by_name() {
+    let folder = folder("bad_words");
+    let words = |extra: &[&str]| fails(&folder, &[&["render", "builtin:fur:10:4", "--out", "x.png"], extra].concat());
+    assert!(words(&["--size", "0x9"]).0.contains("between 1 and 16384"));
+    assert_eq!(words(&["--camera", "1,2"]).1, 2);
+    assert!(words(&["--adapter", "no such thing"]).0.contains("no adapter is named `no such thing`"));
+    std::fs::write(folder.join("bad.toml"), "[sim]\ndamping = 7.0\n").unwrap();
+    let (message, _) = words(&["--params", "bad.toml"]);
+    assert!(message.contains("bad.toml") && message.contains("damping"), "{message}");
+    assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
+    assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
+}
+
+#[test]
+fn the_same_command_gives_the_same_picture_and_the_same_pose() {
+    let folder = folder("twice");
+    for name in ["a", "b"] {
+        render(&folder, &["--out", &format!("{name}.png")]);
+        let pose = format!("{name}.tfx");
+        passes(&folder, &[&["simulate"], &SMALL[..], &["--follow", "2", "--all", "--out", &pose]].concat());
+    }
+    let same = |a: &str, b: &str| std::fs::read(folder.join(a)).unwrap() == std::fs::read(folder.join(b)).unwrap();
+    assert!(same("a.png", "b.png"));
+    assert!(same("a.tfx", "b.tfx"));
+    let text = passes(&folder, &["info", "a.tfx"]);
+    assert!(text.contains("strands    180"), "guides and two follow strands each: {text}");
+}
+
+#[test]
+fn figures_have_their_keys_and_sensible_values() {
+    let folder = folder("stats");
+    let table = render(&folder, &["--out", "frames/", "--stats", "s.json", "--print-passes"]);
+    for label in ["hair.sim.integrate", "hair.render.fill", "hair.render.composite"] {
+        assert!(table.contains(label), "{table}");
+    }
+    assert_eq!(std::fs::read_dir(folder.join("frames")).unwrap().count(), 8);
+    let stats: Value = serde_json::from_slice(&std::fs::read(folder.join("s.json")).unwrap()).unwrap();
+    assert_eq!((&stats["groom"]["strands"], &stats["groom"]["vertices"]), (&60.into(), &720.into()));
+    assert_eq!((&stats["frames"], &stats["backend"]), (&8.into(), &"wgpu".into()));
+    assert_eq!((&stats["sim"]["non_finite"], &stats["sim"]["resets"]), (&0.into(), &0.into()));
+    assert!(stats["sim"]["rms_edge_error"].as_f64().unwrap() < 0.02);
+    assert!(stats["sim"]["max_edge_error"].is_number());
+    assert_eq!(stats["render"]["dropped"], 0);
+    for key in ["fragments", "pixels_with_hair", "peak_gpu_bytes"] {
+        assert!(stats["render"][key].as_u64().unwrap() > 100, "{key}: {stats}");
+    }
+    for pass in stats["passes"].as_array().unwrap() {
+        let figure = |key: &str| pass[key].as_f64().unwrap();
+        assert!(figure("min_ms") <= figure("median_ms") && figure("runs") >= 1.0, "{pass}");
+    }
+}
+
+#[test]
+fn animations_hold_every_frame() {
+    let folder = folder("animation");
+    render(&folder, &["--out", "a.gif"]);
+    render(&folder, &["--out", "a.apng"]);
+    let gif = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(std::fs::read(folder.join("a.gif")).unwrap()));
+    let frames = image::AnimationDecoder::into_frames(gif.unwrap()).collect_frames().unwrap();
+    assert_eq!(frames.len(), 4, "a GIF shows every second of 60 frames a second");
+    let apng = png::Decoder::new(std::io::Cursor::new(std::fs::read(folder.join("a.apng")).unwrap()));
+    let reader = apng.read_info().unwrap();
+    assert_eq!(reader.info().animation_control().unwrap().num_frames, 8);
+}
+
+#[test]
+fn adapters_are_listed() {
+    assert!(!passes(&folder("adapters"), &["adapters"]).trim().is_empty());
+}
