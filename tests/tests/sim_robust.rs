@@ -147,6 +147,24 @@ fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
 }
 
 #[test]
+fn strands_that_are_pinned_at_both_ends_hang_between_them() {
+    let mut strands = random_strands(64, 12, 0, 5);
+    strands.rest.chunks_mut(12).for_each(|strand| strand[11].w = 0.0);
+    let Some(mut rig) = Rig::new(strands, SimParams::default(), &[]) else { return };
+    let motion = Motion::wild(&rig.strands[0]);
+    rig.play(&motion, 1.0, 60);
+    let (positions, head) = (rig.positions(0), motion.head(1.0));
+    let error = metrics::edge_error(&rig.strands[0], &positions);
+    println!("both ends pinned: {error:?}");
+    assert!(error.rms < 0.02, "{error:?}");
+    for (strand, rest) in positions.chunks(12).zip(rig.strands[0].rest.chunks(12)) {
+        for vertex in [0, 11] {
+            assert!(strand[vertex].truncate().distance(head.transform(rest[vertex].truncate())) < 1e-5);
+        }
+    }
+}
+
+#[test]
 fn friction_drags_along_what_lies_on_a_turning_head() {
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.099, radius_b: 0.099 };
     // How far, in all, vertices that touch the ball turn with it.

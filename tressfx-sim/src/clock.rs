@@ -243,3 +243,87 @@ fn interpolate(from: &Pose, to: &Pose, t: f64) -> Pose {
 fn motion(from: &Pose, to: &Pose) -> Pose {
     if from == to { Pose::IDENTITY } else { to.after(&from.inverse()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn clock() -> Clock {
+        let bounds = Bounds { min: Vec3::splat(-0.1), max: Vec3::splat(0.1) };
+        let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
+        let frame = clock.advance(0.0, Pose::IDENTITY);
+        assert_eq!((frame.reset, frame.sub_steps.len()), (Some(Pose::IDENTITY), 0));
+        clock
+    }
+
+    fn moved(x: f32) -> Pose {
+        Pose { translation: Vec3::X * x, ..Pose::IDENTITY }
+    }
+
+    #[test]
+    fn two_seconds_are_as_many_sub_steps_at_any_frame_rate() {
+        for fps in [24, 30, 60, 72, 90, 120, 144, 240, 1000] {
+            let mut clock = clock();
+            let frames = (0..2 * fps).map(|_| clock.advance(1.0 / f64::from(fps), Pose::IDENTITY));
+            assert_eq!(frames.map(|frame| frame.sub_steps.len()).sum::<usize>(), 240, "{fps} fps");
+            assert!((clock.time() - 2.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_head_moves_evenly_and_arrives() {
+        let mut clock = clock();
+        let frame = clock.advance(1.0 / 60.0, moved(0.2));
+        let heads: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.head.translation.x).collect();
+        assert!((heads[0] - 0.1).abs() < 1e-6);
+        assert_eq!(heads[1], 0.2, "the end of the frame is met exactly");
+        assert_eq!(clock.head_lead(), Pose::IDENTITY);
+        // Half of a sub-step: the strands stay, and the renderer is told what they miss.
+        let frame = clock.advance(1.0 / 240.0, moved(0.25));
+        assert!(frame.sub_steps.is_empty());
+        assert!((clock.head_lead().translation.x - 0.05).abs() < 1e-6);
+        let frame = clock.advance(1.0 / 240.0, moved(0.35));
+        assert!((frame.sub_steps[0].motion.translation.x - 0.15).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_head_at_rest_makes_no_motion_at_all() {
+        let mut clock = clock();
+        let head = Pose { rotation: Quat::from_rotation_x(0.3), translation: Vec3::new(0.1, 0.2, 0.3) };
+        clock.advance(0.1, head);
+        let frame = clock.advance(0.1, head);
+        assert!(frame.sub_steps.iter().all(|sub_step| sub_step.motion == Pose::IDENTITY && sub_step.head == head));
+    }
+
+    #[test]
+    fn the_acceleration_is_that_of_the_frames() {
+        let mut clock = clock();
+        let dt = 1.0 / 60.0;
+        let at = |frame: f32| moved(0.5 * 12.0 * (frame / 60.0).powi(2));
+        let accelerations = (1..10).map(|frame| clock.advance(dt, at(frame as f32)).sub_steps[0].acceleration);
+        let accelerations: Vec<f32> = accelerations.collect();
+        assert_eq!(accelerations[0], 0.0, "one frame knows no acceleration");
+        assert!(accelerations[1..].iter().all(|acceleration| (acceleration - 12.0).abs() < 0.1), "{accelerations:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn time_is_simulated_or_dropped_and_never_lost(steps in prop::collection::vec(-0.1..0.5f64, 1..60)) {
+            let mut clock = clock();
+            let (mut passed, mut dropped, mut sub_steps) = (0.0, 0.0, 0);
+            for dt in steps {
+                let frame = clock.advance(dt, Pose::IDENTITY);
+                prop_assert!(frame.sub_steps.len() <= 12);
+                passed += dt.max(0.0);
+                dropped += frame.dropped;
+                sub_steps += frame.sub_steps.len();
+            }
+            let behind = passed - dropped - sub_steps as f64 / 120.0;
+            prop_assert!((-1e-6..1.0 / 120.0 + 1e-6).contains(&behind), "{} s are neither", behind);
+            prop_assert!((clock.time() - sub_steps as f64 / 120.0).abs() < 1e-9);
+        }
+    }
+}

@@ -24,7 +24,10 @@ pub struct SimParams {
     pub damping: f32,
     /// How stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
     /// allow. It is the share of the way that an edge makes to its place in 1/60 s; what one sees is the stiffness of a
-    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default is stiff.
+    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default
+    /// is so stiff that curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
+    ///
+    /// [`ClockParams::sub_step`]: crate::ClockParams::sub_step
     pub local_stiffness: f32,
     /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness, so that more of them
     /// bring it further along the strand and do not change what it is.
