@@ -9,7 +9,7 @@ use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{Step, Units};
 use tressfx_sim::{SimParams, Stage, SubStep, Wind};
 
-/// Of the strand's length. In a groom of many strands one in 200 may miss it: where a vertex has overtaken its parent, the
+/// Of the strand's length. In a groom of many strands one in a hundred may miss it: where a vertex has overtaken its parent, the
 /// direction in which it is placed hangs on the last bits of both.
 const TOLERANCE: f64 = 1e-5;
 
@@ -104,8 +104,8 @@ fn check(name: &str, strands: Strands) {
         let guides = reference.0.len();
         for (gpu, reference) in [(&after.0[..guides], &reference.0), (&after.1[..], &reference.1)] {
             let errors = strand_errors(&rig.strands[0], gpu, reference);
-            let (most, largest) = (errors[(errors.len() * 199).div_ceil(200) - 1], errors[errors.len() - 1]);
-            println!("{name} {}: {most:.1e} (99.5%) {largest:.1e} (largest) of strand length", stage.label());
+            let (most, largest) = (errors[(errors.len() * 99).div_ceil(100) - 1], errors[errors.len() - 1]);
+            println!("{name} {}: {most:.1e} (99%) {largest:.1e} (largest) of strand length", stage.label());
             assert!(most <= TOLERANCE, "{name} {}: {most:e}", stage.label());
         }
         let changed = reference.0 != before.0;

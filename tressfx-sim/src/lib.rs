@@ -1,10 +1,9 @@
 //! The simulation of hair: kernels, their order, and their f64 references.
 //!
 //! The method is that of TressFX 4.1 with its defects mended: Verlet integration, global and local shape constraints,
-//! velocity shock propagation, length constraints, wind, capsules; in fixed sub-steps, and with every length exact at the end
-//! of each. The constraints move strands for good: what they do to positions they do to velocities, and where a vertex is
-//! placed without its parent, the parent's velocity answers for it. [`HairSim`] makes its buffers and pipelines once and then
-//! only writes passes into a [`PassList`](tressfx_core::pass::PassList); it never names a backend, submits or waits.
+//! velocity shock propagation, length constraints, wind, capsules; in fixed sub-steps, and with exact lengths at the end of
+//! each. [`HairSim`] makes its buffers and pipelines once and then only writes passes into a
+//! [`PassList`](tressfx_core::pass::PassList); it never names a backend, submits or waits.
 //!
 //! Every kernel `x` is one file `shaders/x.wgsl`, one function `kernel::x`, one f64 function [`mod@reference`]`::x` and one label
 //! `hair.sim.x`.

@@ -41,7 +41,8 @@ pub struct SimParams {
     /// Sweeps of the distance constraints in each sub-step, 0 to 16, before each vertex is placed at its exact distance from
     /// its parent. Lengths are exact without any; sweeps let the tip pull the root's side, as a real strand does.
     pub length_iterations: u32,
-    /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1.
+    /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1. A smaller
+    /// share leaves them more of their own motion, and makes more of how evenly the head's poses come in.
     pub shock: f32,
     /// Above this acceleration of the head, m/s^2, anywhere in the groom's bounds, the strands make its whole motion at once.
     /// The default is above what a shaken head reaches.
