@@ -238,7 +238,7 @@ pub fn real(path: &str) -> Option<Strands> {
 }
 
 /// Roundings of a coordinate that do not count as an error.
-const ROUNDINGS: f64 = 2.0;
+const ROUNDINGS: f64 = 4.0;
 /// Roundings of a coordinate that the edges of a strand must have on average for f32 to know their directions.
 const RESOLVED: f64 = 100.0;
 
