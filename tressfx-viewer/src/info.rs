@@ -35,7 +35,7 @@ fn print(report: &Report) {
         length.mean, length.min, length.max, length.median
     );
     println!("  bounds     {} to {}", bounds.min, bounds.max);
-    println!("  unit       {unit} m (from the median length, {:.3} m)", length.median * f64::from(unit));
+    println!("  unit       {unit} m (from the size of the groom)");
     println!("  follow     {} a guide", report.follow_count);
     if !report.arrays.is_empty() {
         println!("  also holds {}", report.arrays.join(", "));
