@@ -97,8 +97,9 @@ fn store(node: u32, pixel: vec2<u32>, fragment: Fragment) {
 }
 
 // Visits the pixels that the ribbon may touch, column by column along the axis that it follows most. Returns the number
-// of fragments.
-fn walk(ribbon: Ribbon, paint: Paint, first: u32, storing: bool) -> u32 {
+// of fragments. Those for which there is `room` go into the nodes from `first` on: never into more than were asked for, even
+// if a compiler rounds the two walks of a thread differently. A node in two lists would close one of them to a ring.
+fn walk(ribbon: Ribbon, paint: Paint, first: u32, room: u32) -> u32 {
     let line = line_of(ribbon);
     if !ribbon.visible || line.square < 1e-12 {
         return 0u;
@@ -122,7 +123,7 @@ fn walk(ribbon: Ribbon, paint: Paint, first: u32, storing: bool) -> u32 {
             let pixel = vec2<u32>(select(vec2(column, row), vec2(row, column), steep));
             let fragment = fragment_at(ribbon, line, paint, pixel);
             if fragment.alpha > 0u {
-                if storing {
+                if count < room {
                     store(first + count, pixel, fragment);
                 }
                 count++;
@@ -148,12 +149,12 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         ribbon = ribbon_of(strand, vertex);
         paint = Paint(paint_at(strand, vertex), paint_at(strand, vertex + 1u));
     }
-    let count = walk(ribbon, paint, 0u, false);
+    let count = walk(ribbon, paint, 0u, 0u);
     let place = atomicAdd(&requested, count);
     workgroupBarrier();
     if lane == 0u {
         granted = atomicAdd(&counters.fragments, atomicLoad(&requested));
     }
     workgroupBarrier();
-    walk(ribbon, paint, granted + place, true);
+    walk(ribbon, paint, granted + place, count);
 }
