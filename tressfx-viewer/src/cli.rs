@@ -31,7 +31,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// Files, or builtin:NAME[:STRANDS[:VERTICES]]
+    /// Files, or `builtin:NAME[:STRANDS[:VERTICES]]`
     #[arg(required = true, value_name = "FILE")]
     pub(crate) grooms: Vec<String>,
     /// Write JSON: an array with one object a file
@@ -41,7 +41,7 @@ pub(crate) struct Info {
 
 #[derive(Debug, Args)]
 pub(crate) struct Convert {
-    /// The file to read, of any format, or builtin:NAME[:STRANDS[:VERTICES]]
+    /// The file to read, of any format, or `builtin:NAME[:STRANDS[:VERTICES]]`
     pub(crate) input: String,
     /// The file to write
     pub(crate) output: PathBuf,
@@ -50,7 +50,7 @@ pub(crate) struct Convert {
 /// What `render` and `simulate` share.
 #[derive(Debug, Args)]
 pub(crate) struct Scene {
-    /// Files, or builtin:NAME[:STRANDS[:VERTICES]]; several become the sections of one groom
+    /// Files, or `builtin:NAME[:STRANDS[:VERTICES]]`; several become the sections of one groom
     #[arg(required = true, value_name = "GROOM")]
     pub(crate) grooms: Vec<String>,
     /// Frames to simulate
