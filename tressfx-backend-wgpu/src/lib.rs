@@ -2,7 +2,7 @@
 //!
 //! # Promises
 //!
-//! * [`Record::record`](tressfx_core::backend::Record::record) never submits, waits or keeps the encoder.
+//! * [`Record::record`] never submits, waits or keeps the encoder.
 //! * Imported buffers and textures are never destroyed here; `destroy` only forgets them.
 //! * wgpu derives barriers by itself, so the hazards of `tressfx-core` are not asked for.
 //!
