@@ -97,3 +97,29 @@ impl StrandBuffers {
         list.upload(self.thickness, 0, &strands.interleave(&strands.thickness));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builtin::Builtin;
+    use crate::strands::StrandOptions;
+
+    #[test]
+    fn places_in_a_buffer_are_those_of_the_interleaved_strands() {
+        let builtin = Builtin::parse("fur:5:3").expect("a built-in groom");
+        let options = StrandOptions { follows: Some(2), ..StrandOptions::default() };
+        let strands = Strands::new(&builtin.asset(), &options).expect("a sound groom");
+        let shape = StrandShape::of(&strands);
+        let numbered: Vec<u32> = (0..shape.strand_vertices()).collect();
+        let interleaved = strands.interleave(&numbered);
+        for strand in 0..shape.strands() {
+            for vertex in 0..shape.vertices {
+                let place = shape.index(strand, vertex) as usize;
+                assert_eq!(interleaved[place], strand * shape.vertices + vertex);
+            }
+        }
+        let root = |strand: u32| strands.rest_of_all()[(strand * shape.vertices) as usize];
+        let offset = strands.follow_offsets[(shape.guides + 3) as usize];
+        assert_eq!(root(shape.follow(3, 1)), root(3) + offset, "the second follow strand of guide 3");
+    }
+}

@@ -32,7 +32,7 @@ pub(crate) struct SectionBuffers {
 
 impl SectionBuffers {
     pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands) -> Result<Self> {
-        let shape = StrandShape { guides: strands.guides, follows: strands.follows, vertices: strands.vertices };
+        let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
         let follows = shape.guides * shape.follows;
         Ok(Self {

@@ -65,7 +65,8 @@ impl Output {
             Some("apng") => Self::Animation(path.to_owned(), Kind::Apng, Vec::new()),
             _ => bail!("{text}: the ending chooses the format: .png, .gif, .apng, or / for a folder"),
         };
-        create(path)?;
+        // Not truncated yet: a run that fails must not cost the picture of an earlier one.
+        File::options().create(true).append(true).open(path).with_context(|| text.to_string())?;
         Ok(output)
     }
 

@@ -1,11 +1,11 @@
-//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`.
+//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`.
 
 mod chore;
 mod driver;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask demo | test
+const USAGE: &str = "usage: cargo xtask demo | test | docs
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
