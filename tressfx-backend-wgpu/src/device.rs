@@ -81,6 +81,10 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     let limits = device.limits();
     Caps {
         adapter: describe(&device.adapter_info()),
+        compute: true,
+        raster: true,
+        read_back: true,
+        fragment_writes: true,
         max_storage_buffers_per_stage: limits.max_storage_buffers_per_shader_stage,
         max_storage_binding_bytes: limits.max_storage_buffer_binding_size,
         max_buffer_bytes: limits.max_buffer_size,

@@ -3,7 +3,7 @@
 use tressfx_core::backend::Record;
 use tressfx_core::check::check;
 use tressfx_core::error::Result;
-use tressfx_core::pass::{Command, ComputePass, Load, PassList, RasterPass};
+use tressfx_core::pass::{Command, ComputePass, Grid, Groups, Load, PassList, RasterPass};
 use wgpu::util::DeviceExt;
 
 use crate::WgpuBackend;
@@ -24,7 +24,7 @@ impl Record for WgpuBackend {
                 usage: wgpu::BufferUsages::COPY_SRC,
             })
         });
-        let mut frame = self.timer.begin(&self.device, list);
+        let mut frame = self.timer.begin(&self.device, list, |resource| self.bytes(resource));
         for command in &list.commands {
             self.encode(encoder, command, uploads.as_ref(), frame.as_mut());
         }
@@ -77,8 +77,12 @@ impl WgpuBackend {
         });
         compute.set_pipeline(pipeline);
         compute.set_bind_group(0, self.bind_group(&pass.kernel, &pass.bindings), &[]);
-        let [x, y, z] = pass.grid.0;
-        compute.dispatch_workgroups(x, y, z);
+        match pass.groups {
+            Groups::Grid(Grid([x, y, z])) => compute.dispatch_workgroups(x, y, z),
+            Groups::Indirect { buffer, offset } => {
+                compute.dispatch_workgroups_indirect(self.buffer(buffer, label), offset);
+            }
+        }
     }
 
     fn encode_raster(&mut self, encoder: &mut wgpu::CommandEncoder, pass: &RasterPass, frame: Option<&mut Frame>) {

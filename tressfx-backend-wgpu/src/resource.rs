@@ -85,6 +85,18 @@ impl WgpuBackend {
         &self.buffers.expect(id.0, what).buffer
     }
 
+    /// What a resource takes in memory, whoever owns it.
+    pub(crate) fn bytes(&self, resource: Resource) -> u64 {
+        match resource {
+            Resource::Buffer(id) => self.buffer(id, "record").size(),
+            Resource::Texture(id) => {
+                let texture = &self.texture(id, "record").texture;
+                let texel = texture.format().block_copy_size(None).unwrap_or(0);
+                u64::from(texture.width()) * u64::from(texture.height()) * u64::from(texel)
+            }
+        }
+    }
+
     pub(crate) fn texture(&self, id: TextureId, what: &str) -> &Texture {
         self.textures.expect(id.0, what)
     }

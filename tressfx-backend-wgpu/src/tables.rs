@@ -9,6 +9,7 @@ pub(crate) fn buffer_usages(usage: BufferUse) -> BufferUsages {
     match usage {
         BufferUse::Storage => copied | BufferUsages::STORAGE,
         BufferUse::Uniform => copied | BufferUsages::UNIFORM,
+        BufferUse::Indirect => copied | BufferUsages::STORAGE | BufferUsages::INDIRECT,
     }
 }
 

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 
 use tressfx_core::backend::Timing;
-use tressfx_core::error::Label;
+use tressfx_core::hazards::accesses;
+use tressfx_core::id::Resource;
 use tressfx_core::pass::PassList;
 
 use crate::read::Mapped;
@@ -25,7 +26,8 @@ pub(crate) struct Timer {
 /// A list that is being recorded.
 #[derive(Debug)]
 pub(crate) struct Frame {
-    labels: Vec<Label>,
+    /// The passes, without their times.
+    timings: Vec<Timing>,
     used: u32,
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
@@ -35,7 +37,7 @@ pub(crate) struct Frame {
 /// A list whose timestamps are on their way.
 #[derive(Debug)]
 struct Finished {
-    labels: Vec<Label>,
+    timings: Vec<Timing>,
     copy: Mapped,
     /// Before its encoder is submitted its times must not be asked for.
     submitted: bool,
@@ -48,16 +50,27 @@ impl Timer {
     }
 
     /// Queries for every pass of `list`; `None` where there is nothing to time, or more than one query set holds.
-    pub(crate) fn begin(&self, device: &wgpu::Device, list: &PassList) -> Option<Frame> {
+    pub(crate) fn begin(
+        &self,
+        device: &wgpu::Device,
+        list: &PassList,
+        bytes_of: impl Fn(Resource) -> u64,
+    ) -> Option<Frame> {
         self.period?;
-        let labels: Vec<Label> = list.labels().collect();
-        let count = 2 * labels.len() as u32;
+        let timings: Vec<Timing> = list
+            .passes()
+            .map(|(label, command)| {
+                let bytes = accesses(command).into_iter().map(|(resource, _)| bytes_of(resource)).sum();
+                Timing { label, begin: 0.0, nanoseconds: 0.0, bytes, invocations: None }
+            })
+            .collect();
+        let count = 2 * timings.len() as u32;
         if !(1..=MAX_QUERIES).contains(&count) {
             return None;
         }
         let bytes = u64::from(count) * u64::from(wgpu::QUERY_SIZE);
         Some(Frame {
-            labels,
+            timings,
             used: 0,
             queries: device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("hair.timestamps"),
@@ -79,7 +92,7 @@ impl Timer {
         encoder.copy_buffer_to_buffer(&frame.resolved, 0, frame.copy.buffer(), 0, frame.resolved.size());
         // An engine that records the next frame has submitted this one.
         self.mark_submitted();
-        self.pending.push_back(Finished { labels: frame.labels, copy: frame.copy, submitted: false });
+        self.pending.push_back(Finished { timings: frame.timings, copy: frame.copy, submitted: false });
         if self.pending.len() > MAX_PENDING {
             self.pending.pop_front();
         }
@@ -101,16 +114,13 @@ impl Timer {
             let Some(bytes) = finished.copy.bytes(device) else { continue };
             let ticks: Vec<u64> =
                 bytes.chunks_exact(8).map(|tick| u64::from_le_bytes(tick.try_into().expect("8 bytes"))).collect();
-            let timings = finished
-                .labels
-                .iter()
-                .zip(ticks.chunks_exact(2))
-                .map(|(&label, ends)| Timing {
-                    label,
-                    nanoseconds: ends[1].saturating_sub(ends[0]) as f64 * f64::from(period),
-                })
-                .collect();
             drop(bytes);
+            let mut timings = std::mem::take(&mut finished.timings);
+            for (timing, ends) in timings.iter_mut().zip(ticks.chunks_exact(2)) {
+                let nanoseconds = |from: u64, to: u64| to.saturating_sub(from) as f64 * f64::from(period);
+                timing.begin = nanoseconds(ticks[0], ends[0]);
+                timing.nanoseconds = nanoseconds(ends[0], ends[1]);
+            }
             self.pending.drain(..=index);
             return timings;
         }

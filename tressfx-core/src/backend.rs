@@ -38,8 +38,7 @@ pub trait Backend {
     /// To be asked only after the list was submitted.
     fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>>;
 
-    /// GPU time of each compute and raster pass of the newest finished list, in its order; empty where the device cannot
-    /// time.
+    /// Cost of each compute and raster pass of the newest finished list, in its order; empty where the device cannot time.
     fn timings(&mut self) -> Vec<Timing>;
 
     /// Bytes of buffers and textures that this backend made: now, and at most so far.
@@ -62,6 +61,8 @@ pub enum BufferUse {
     Storage,
     /// `var<uniform>`.
     Uniform,
+    /// `var<storage>`, and the number of groups of compute passes.
+    Indirect,
 }
 
 /// A buffer to be made.
@@ -211,13 +212,19 @@ impl PartialEq for Kernel {
     }
 }
 
-/// GPU time of one pass.
+/// What one pass cost the GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// The pass.
     pub label: Label,
+    /// When it began, in nanoseconds after the first pass of its list.
+    pub begin: f64,
     /// Its time.
     pub nanoseconds: f64,
+    /// Bytes of all that is bound or drawn to, each resource once: the most that one reading of everything can cost.
+    pub bytes: u64,
+    /// Shader invocations, where the device counts them and was asked to.
+    pub invocations: Option<u64>,
 }
 
 /// Bytes of buffers and textures.
@@ -247,6 +254,14 @@ impl Memory {
 pub struct Caps {
     /// The adapter, for people to read.
     pub adapter: String,
+    /// Whether it runs compute passes.
+    pub compute: bool,
+    /// Whether it runs raster passes.
+    pub raster: bool,
+    /// Whether bytes can be read back.
+    pub read_back: bool,
+    /// Whether fragment shaders can write storage buffers.
+    pub fragment_writes: bool,
     /// Storage buffers that one stage can be given.
     pub max_storage_buffers_per_stage: u32,
     /// Bytes of one storage binding.
@@ -264,6 +279,10 @@ impl Caps {
     pub fn webgpu_default() -> Self {
         Self {
             adapter: String::from("WebGPU default limits"),
+            compute: true,
+            raster: true,
+            read_back: true,
+            fragment_writes: true,
             max_storage_buffers_per_stage: 8,
             max_storage_binding_bytes: 128 << 20,
             max_buffer_bytes: 256 << 20,
@@ -279,6 +298,10 @@ impl Caps {
     pub fn check(&self, label: Label, needs: &[Need]) -> Result<()> {
         for &need in needs {
             let (want, have) = match need {
+                Need::Compute => (1, u64::from(self.compute)),
+                Need::Raster => (1, u64::from(self.raster)),
+                Need::ReadBack => (1, u64::from(self.read_back)),
+                Need::FragmentWrites => (1, u64::from(self.fragment_writes)),
                 Need::StorageBuffers(count) => (u64::from(count), u64::from(self.max_storage_buffers_per_stage)),
                 Need::StorageBindingBytes(bytes) => (bytes, self.max_storage_binding_bytes.min(self.max_buffer_bytes)),
                 Need::TextureEdge(texels) => (u64::from(texels), u64::from(self.max_texture_edge)),
@@ -294,6 +317,14 @@ impl Caps {
 /// Something that a technique asks of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
+    /// Compute passes.
+    Compute,
+    /// Raster passes.
+    Raster,
+    /// Bytes that come back.
+    ReadBack,
+    /// Fragment shaders that write storage buffers.
+    FragmentWrites,
     /// So many storage buffers in one stage.
     StorageBuffers(u32),
     /// One storage binding of so many bytes.
@@ -305,6 +336,10 @@ pub enum Need {
 impl fmt::Display for Need {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
+            Self::Compute => out.write_str("compute passes"),
+            Self::Raster => out.write_str("raster passes"),
+            Self::ReadBack => out.write_str("reading back"),
+            Self::FragmentWrites => out.write_str("fragment shaders that write storage buffers"),
             Self::StorageBuffers(count) => write!(out, "{count} storage buffers in one stage"),
             Self::StorageBindingBytes(bytes) => write!(out, "a storage binding of {bytes} bytes"),
             Self::TextureEdge(texels) => write!(out, "a texture edge of {texels} texels"),

@@ -2,7 +2,7 @@
 
 use crate::hazards::{Access, accesses};
 use crate::id::Resource;
-use crate::pass::{Command, Grid, PassList};
+use crate::pass::{Command, ComputePass, Grid, Groups, PassList};
 use crate::shader::{Shader, SlotKind};
 
 /// Checks a list in debug builds.
@@ -20,7 +20,7 @@ pub fn check(list: &PassList) {
 /// The first broken rule of a list, in words.
 ///
 /// The rules: sizes and offsets are multiples of 4, uploads lie within the list's bytes, a copy has two ends, a grid fits
-/// the dimensions of every device, each binding is of the kind that the shader declares, and within one pass nothing
+/// the dimensions of every device, a buffer with the number of groups is not bound beside, each binding is of the kind that the shader declares, and within one pass nothing
 /// that is written or drawn to is also bound another way.
 pub fn problem(list: &PassList) -> Option<String> {
     list.commands.iter().enumerate().find_map(|(index, command)| {
@@ -46,6 +46,7 @@ fn misaligned(command: &Command) -> Option<String> {
         Command::Upload { offset, data, .. } => vec![*offset, data.len() as u64],
         Command::Clear { offset, bytes, .. } | Command::ReadBuffer { offset, bytes, .. } => vec![*offset, *bytes],
         Command::Copy { src_offset, dst_offset, bytes, .. } => vec![*src_offset, *dst_offset, *bytes],
+        Command::Compute(ComputePass { groups: Groups::Indirect { offset, .. }, .. }) => vec![*offset],
         _ => Vec::new(),
     };
     let odd = sizes.into_iter().find(|size| size % 4 != 0)?;
@@ -58,12 +59,9 @@ fn misused(command: &Command, bytes: usize) -> Option<String> {
             Some(format!("bytes {data:?} of a list that holds {bytes}"))
         }
         Command::Copy { src, dst, .. } if src == dst => Some(String::from("from a buffer to itself")),
-        Command::Compute(pass) => {
-            let too_many = pass.grid.0.iter().any(|&groups| groups > Grid::MAX_GROUPS);
-            too_many
-                .then(|| format!("{:?} exceeds {} groups in a dimension", pass.grid, Grid::MAX_GROUPS))
-                .or_else(|| mismatch(&pass.kernel.shader, pass.bindings.resources()))
-        }
+        Command::Compute(pass) => crowded(pass.groups)
+            .or_else(|| mismatch(&pass.kernel.shader, pass.bindings.resources()))
+            .or_else(|| argued(pass)),
         Command::Raster(pass) => pass
             .draws
             .iter()
@@ -71,6 +69,18 @@ fn misused(command: &Command, bytes: usize) -> Option<String> {
             .or_else(|| drawn_and_bound(command)),
         _ => None,
     }
+}
+
+fn crowded(groups: Groups) -> Option<String> {
+    let Groups::Grid(grid) = groups else { return None };
+    let too_many = grid.0.iter().any(|&groups| groups > Grid::MAX_GROUPS);
+    too_many.then(|| format!("{grid:?} exceeds {} groups in a dimension", Grid::MAX_GROUPS))
+}
+
+fn argued(pass: &ComputePass) -> Option<String> {
+    let Groups::Indirect { buffer, .. } = pass.groups else { return None };
+    let bound = pass.bindings.resources().contains(&buffer.into());
+    bound.then(|| format!("{buffer:?} holds the number of groups and is bound in the same pass"))
 }
 
 fn mismatch(shader: &Shader, resources: &[Resource]) -> Option<String> {

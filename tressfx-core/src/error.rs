@@ -26,7 +26,7 @@ pub enum Error {
         reason: String,
     },
     /// The device cannot do what a technique needs.
-    #[error("{label}: needs {need}, the device has {have}")]
+    #[error("{label}: needs {need}, the device has {}", if *have == 0 { String::from("none") } else { have.to_string() })]
     Unsupported {
         /// The technique or resource.
         label: Label,

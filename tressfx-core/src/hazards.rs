@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::ops::BitOr;
 
 use crate::id::Resource;
-use crate::pass::{Command, Draw, PassList};
+use crate::pass::{Command, Draw, Groups, PassList};
 use crate::shader::{Bindings, Shader, SlotKind};
 
 /// Kinds of access, as a set.
@@ -32,6 +32,9 @@ impl Access {
     pub const COPY_WRITE: Self = Self(1 << 5);
     /// Drawn to, as a colour or depth target.
     pub const TARGET: Self = Self(1 << 6);
+
+    /// Read as the number of groups of a compute pass.
+    pub const INDIRECT_READ: Self = Self(1 << 7);
 
     const WRITES: Self = Self(1 << 1 | 1 << 3 | 1 << 5 | 1 << 6);
 
@@ -63,7 +66,7 @@ impl BitOr for Access {
 pub struct Wait {
     /// The resource.
     pub resource: Resource,
-    /// What was done to it before. Empty: its contents are not needed.
+    /// What was done to it before. Empty: it is a texture without contents, which only has to be put into a layout.
     pub before: Access,
     /// What the command does with it.
     pub after: Access,
@@ -78,6 +81,32 @@ struct State {
     read: Access,
     /// Accesses that need not wait for the write any more.
     seen: Access,
+    /// How a texture lies in memory; `None` before its first use.
+    layout: Option<Layout>,
+}
+
+/// How a texture lies in memory: APIs that ask for barriers ask for these too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// As it is drawn to.
+    Target,
+    /// As shaders read it.
+    Sampled,
+    /// As it is copied.
+    Copied,
+}
+
+impl Layout {
+    /// The layout that an access to a texture needs.
+    pub fn of(access: Access) -> Self {
+        if access.contains(Access::TARGET) {
+            Self::Target
+        } else if access.0 & (Access::COPY_READ | Access::COPY_WRITE).0 != 0 {
+            Self::Copied
+        } else {
+            Self::Sampled
+        }
+    }
 }
 
 /// Walks lists in the order in which they are recorded. It lives as long as a backend, so that it joins frames too.
@@ -101,13 +130,24 @@ impl Hazards {
         self.states.remove(&resource);
     }
 
-    fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
+    /// Says in which use an imported resource is found.
+    pub fn assume(&mut self, resource: Resource, access: Access) {
+        let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
+        let seen = if access.writes() { Access::NONE } else { access };
+        self.states.insert(resource, State { written: access, read: seen, seen, layout });
+    }
+
+    /// What must be waited for before `resource` is used so.
+    pub fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
         let state = self.states.entry(resource).or_default();
-        // A texture changes its layout between drawing and sampling, which counts as a write.
-        if access.writes() {
+        let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
+        // A change of layout writes, whatever it is changed for, and the use that it was changed for has seen it.
+        if access.writes() || state.layout != layout {
             let before = state.written | state.read;
-            *state = State { written: access, read: Access::NONE, seen: Access::NONE };
-            return (!before.is_empty()).then_some(Wait { resource, before, after: access });
+            let (read, seen) = if access.writes() { (Access::NONE, Access::NONE) } else { (access, access) };
+            let wait = !before.is_empty() || state.layout != layout;
+            *state = State { written: access, read, seen, layout };
+            return wait.then_some(Wait { resource, before, after: access });
         }
         let seen = state.written.is_empty() || state.seen.contains(access);
         let before = state.written;
@@ -129,6 +169,9 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
         Command::ReadBuffer { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
         Command::ReadTexture { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
         Command::Compute(pass) => {
+            if let Groups::Indirect { buffer, .. } = pass.groups {
+                found.push((buffer.into(), Access::INDIRECT_READ));
+            }
             bound(&mut found, &pass.kernel.shader, &pass.bindings, [Access::COMPUTE_READ, Access::COMPUTE_WRITE]);
         }
         Command::Raster(pass) => {
@@ -212,6 +255,30 @@ mod tests {
         for access in [Access::COMPUTE_READ, Access::RASTER_READ, Access::COPY_READ, Access::COMPUTE_READ] {
             assert_eq!(hazards.touch(a, access), None);
         }
+    }
+
+    #[test]
+    fn a_texture_waits_for_every_change_of_its_layout() {
+        let mut slots = Slots::default();
+        let a = Resource::Texture(slots.insert(()).into());
+        let mut hazards = Hazards::default();
+        assert_eq!(hazards.touch(a, Access::TARGET), wait(a, Access::NONE, Access::TARGET), "it has no layout yet");
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), wait(a, Access::TARGET, Access::RASTER_READ));
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
+        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::RASTER_READ, Access::COMPUTE_READ));
+        let reads = Access::RASTER_READ | Access::COMPUTE_READ;
+        assert_eq!(hazards.touch(a, Access::COPY_READ), wait(a, reads, Access::COPY_READ), "copied is another layout");
+        assert_eq!(hazards.touch(a, Access::COPY_READ), None);
+    }
+
+    #[test]
+    fn an_imported_texture_is_found_as_it_was_left() {
+        let mut slots = Slots::default();
+        let a = Resource::Texture(slots.insert(()).into());
+        let mut hazards = Hazards::default();
+        hazards.assume(a, Access::RASTER_READ);
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), None, "it is there for this use already");
+        assert_eq!(hazards.touch(a, Access::TARGET), wait(a, Access::RASTER_READ, Access::TARGET));
     }
 
     #[test]

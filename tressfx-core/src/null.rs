@@ -26,7 +26,7 @@ pub struct NullBackend {
 
 impl Default for NullBackend {
     fn default() -> Self {
-        Self::new(Caps { adapter: String::from("none"), ..Caps::webgpu_default() })
+        Self::new(Caps { adapter: String::from("none"), read_back: false, ..Caps::webgpu_default() })
     }
 }
 

@@ -48,6 +48,20 @@ impl Grid {
     }
 }
 
+/// How many groups of a compute pass run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// So many.
+    Grid(Grid),
+    /// As many as a buffer says once its turn has come: three `u32` for x, y and z, each at most [`Grid::MAX_GROUPS`].
+    Indirect {
+        /// A buffer made with [`BufferUse::Indirect`](crate::backend::BufferUse::Indirect).
+        buffer: BufferId,
+        /// Where in it; a multiple of 4.
+        offset: u64,
+    },
+}
+
 /// How a render target begins a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load<T> {
@@ -65,7 +79,7 @@ pub struct ComputePass {
     /// What it reads and writes.
     pub bindings: Bindings,
     /// How often it runs.
-    pub grid: Grid,
+    pub groups: Groups,
 }
 
 /// One draw of a raster pass.
@@ -195,9 +209,15 @@ impl PassList {
     /// Runs `kernel` over `grid`; an empty grid is left out.
     pub fn compute(&mut self, kernel: &Kernel, bindings: &Bindings, grid: Grid) {
         if !grid.is_empty() {
-            let pass = ComputePass { kernel: kernel.clone(), bindings: bindings.clone(), grid };
-            self.commands.push(Command::Compute(pass));
+            let (kernel, bindings) = (kernel.clone(), bindings.clone());
+            self.commands.push(Command::Compute(ComputePass { kernel, bindings, groups: Groups::Grid(grid) }));
         }
+    }
+
+    /// Runs `kernel` over as many groups as `buffer` says from byte `offset` on.
+    pub fn compute_indirect(&mut self, kernel: &Kernel, bindings: &Bindings, buffer: BufferId, offset: u64) {
+        let (kernel, bindings, groups) = (kernel.clone(), bindings.clone(), Groups::Indirect { buffer, offset });
+        self.commands.push(Command::Compute(ComputePass { kernel, bindings, groups }));
     }
 
     /// Draws.
@@ -219,13 +239,18 @@ impl PassList {
         ticket
     }
 
-    /// Labels of the compute and raster passes, in order.
-    pub fn labels(&self) -> impl Iterator<Item = Label> {
+    /// The compute and raster passes with their labels, in order.
+    pub fn passes(&self) -> impl Iterator<Item = (Label, &Command)> {
         self.commands.iter().filter_map(|command| match command {
-            Command::Compute(pass) => Some(pass.kernel.label()),
-            Command::Raster(pass) => Some(pass.label),
+            Command::Compute(pass) => Some((pass.kernel.label(), command)),
+            Command::Raster(pass) => Some((pass.label, command)),
             _ => None,
         })
+    }
+
+    /// Labels of the compute and raster passes, in order.
+    pub fn labels(&self) -> impl Iterator<Item = Label> {
+        self.passes().map(|(label, _)| label)
     }
 }
 

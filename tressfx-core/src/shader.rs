@@ -6,11 +6,13 @@ mod bindings;
 mod compose;
 mod layout;
 mod reflect;
+mod spirv;
 
 pub use bindings::Bindings;
 pub use compose::{Module, ShaderSource, Specialization, shared_modules};
 pub use layout::GpuStruct;
 pub use reflect::{ShaderSlot, SlotKind, Stages};
+pub use spirv::SpirvOptions;
 
 use crate::error::{Error, Label, Result};
 

@@ -2,7 +2,7 @@
 
 use comfy_table::{Table, presets};
 use tressfx_core::backend::Kernel;
-use tressfx_core::pass::{Command, PassList};
+use tressfx_core::pass::{Command, Grid, Groups, PassList};
 use tressfx_core::shader::SlotKind;
 
 /// One row a compute pass or draw, in the order in which they run.
@@ -13,8 +13,10 @@ pub(crate) fn table(list: &PassList) -> String {
     for command in &list.commands {
         match command {
             Command::Compute(pass) => {
-                let [x, y, z] = pass.grid.0;
-                let size = format!("{x} x {y} x {z} groups");
+                let size = match pass.groups {
+                    Groups::Grid(Grid([x, y, z])) => format!("{x} x {y} x {z} groups"),
+                    Groups::Indirect { .. } => String::from("as a buffer says"),
+                };
                 table.add_row(row(pass.kernel.label(), &pass.kernel, size));
             }
             Command::Raster(pass) => {
