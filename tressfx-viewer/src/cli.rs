@@ -83,6 +83,18 @@ pub(crate) struct Scene {
     /// Print the passes of a frame as a table
     #[arg(long)]
     pub(crate) print_passes: bool,
+    /// Print what each pass costs as a table; every frame is drawn
+    #[arg(long)]
+    pub(crate) profile: bool,
+    /// Write when what ran, for chrome://tracing and Perfetto; every frame is drawn
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Let the Vulkan validation layer watch: what it says is an error
+    #[arg(long)]
+    pub(crate) validate: bool,
+    /// Keep compiled pipelines of raw Vulkan in this file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) pipeline_cache: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -134,6 +146,10 @@ pub(crate) enum Motion {
 pub(crate) enum BackendName {
     /// Vulkan, Metal or Direct3D 12 through wgpu
     Wgpu,
+    /// Raw Vulkan 1.3
+    Vulkan,
+    /// One after the other, with a comparison of their pictures
+    Both,
 }
 
 /// `N` finite numbers between commas.

@@ -2,6 +2,7 @@
 
 #![forbid(unsafe_code)]
 
+mod backend;
 mod camera;
 mod cli;
 mod convert;
@@ -16,10 +17,10 @@ mod run;
 mod simulate;
 mod stats;
 mod studio;
+mod trace;
 
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
 use clap::Parser;
 
 use crate::cli::{Cli, Command};
@@ -31,7 +32,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Convert(args) => convert::run(&args),
-        Command::Adapters => adapters(),
+        Command::Adapters => backend::adapters(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -40,16 +41,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-fn adapters() -> Result<()> {
-    let adapters = tressfx_backend_wgpu::adapters();
-    if adapters.is_empty() {
-        bail!(
-            "{}",
-            tressfx_backend_wgpu::WgpuBackend::headless().err().map_or(String::new(), |error| error.to_string())
-        );
-    }
-    adapters.iter().for_each(|adapter| println!("{adapter}"));
-    Ok(())
 }
