@@ -1,9 +1,10 @@
-//! The program `tressfx`: simulates, renders, inspects and converts grooms. It holds no hair logic.
+//! The program `tressfx`: simulates, renders, inspects and converts grooms, and compares pictures of them. It holds no hair logic.
 
 #![forbid(unsafe_code)]
 
 mod camera;
 mod cli;
+mod compare;
 mod convert;
 mod groom;
 mod info;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Adapters => adapters(),
     };
     match done {
