@@ -1,10 +1,11 @@
-//! The program `tressfx`: simulates, renders, inspects and converts grooms. It holds no hair logic.
+//! The program `tressfx`: simulates, renders, inspects and converts grooms, and compares pictures of them. It holds no hair logic.
 
 #![forbid(unsafe_code)]
 
 mod backend;
 mod camera;
 mod cli;
+mod compare;
 mod convert;
 mod groom;
 mod info;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Adapters => backend::adapters(),
+        Command::Compare(args) => compare::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
