@@ -1,8 +1,10 @@
 //! The contract on a GPU: order, data, depth, blending, read-back.
 
+mod support;
+
 use std::sync::Arc;
 
-use tressfx_conformance::{gpu, run_and_read};
+use tressfx_conformance::run_and_read;
 use tressfx_core::backend::{
     Backend, Blend, BufferDesc, BufferUse, ComputeDesc, Depth, DepthOrder, Format, Kernel, RasterDesc, TextureDesc,
 };
@@ -10,6 +12,8 @@ use tressfx_core::error::Error;
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Draw, Grid, Load, PassList, RasterPass};
 use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+
+use support::gpu;
 
 const DOUBLE: &str = "
     import package::grid::{thread_index, GROUP};
@@ -49,9 +53,9 @@ fn words(bytes: &[u8]) -> Vec<u32> {
 fn commands_take_effect_in_the_order_of_the_list() {
     let Some(mut backend) = gpu() else { return };
     let kernel = backend.create_compute(&ComputeDesc { shader: shader(DOUBLE) }).unwrap();
-    let count = buffer(&mut backend, 16, BufferUse::Uniform);
-    let values = buffer(&mut backend, 4 * 200, BufferUse::Storage);
-    let other = buffer(&mut backend, 4 * 200, BufferUse::Storage);
+    let count = buffer(&mut *backend, 16, BufferUse::Uniform);
+    let values = buffer(&mut *backend, 4 * 200, BufferUse::Storage);
+    let other = buffer(&mut *backend, 4 * 200, BufferUse::Storage);
     let bindings = kernel.bind(&[("count", count.into()), ("values", values.into())]);
     let mut list = PassList::new();
     list.upload(count, 0, &[150u32, 0, 0, 0]);
@@ -63,7 +67,7 @@ fn commands_take_effect_in_the_order_of_the_list() {
     list.clear(values, 4, 8);
     list.upload(values, 0, &[7u32]);
     let [first, second] = [other, values].map(|buffer| list.read_buffer(buffer, 0, 4 * 200));
-    let copied = words(&run_and_read(&mut backend, &list, first));
+    let copied = words(&run_and_read(&mut *backend, &list, first));
     let expected = |i: u32| {
         if i < 100 {
             4 * i
@@ -87,10 +91,10 @@ fn commands_take_effect_in_the_order_of_the_list() {
 #[test]
 fn buffers_begin_as_zeros() {
     let Some(mut backend) = gpu() else { return };
-    let fresh = buffer(&mut backend, 1 << 16, BufferUse::Storage);
+    let fresh = buffer(&mut *backend, 1 << 16, BufferUse::Storage);
     let mut list = PassList::new();
     let ticket = list.read_buffer(fresh, 0, 1 << 16);
-    assert!(run_and_read(&mut backend, &list, ticket).iter().all(|&byte| byte == 0));
+    assert!(run_and_read(&mut *backend, &list, ticket).iter().all(|&byte| byte == 0));
 }
 
 struct Canvas {
@@ -135,11 +139,11 @@ fn paint(backend: &mut dyn Backend, list: &mut PassList, kernel: &Kernel, color:
 
 fn picture(blend: Blend, order: DepthOrder, layers: &[([f32; 4], f32)]) -> Option<Vec<[u8; 4]>> {
     let mut backend = gpu()?;
-    let canvas = Canvas::new(&mut backend, order);
+    let canvas = Canvas::new(&mut *backend, order);
     let mut list = PassList::new();
-    canvas.draw(&mut backend, &mut list, blend, layers);
+    canvas.draw(&mut *backend, &mut list, blend, layers);
     let ticket = list.read_texture(canvas.color);
-    let bytes = run_and_read(&mut backend, &list, ticket);
+    let bytes = run_and_read(&mut *backend, &list, ticket);
     assert_eq!(bytes.len() as u32, 4 * Canvas::SIZE[0] * Canvas::SIZE[1], "rows come tightly packed");
     Some(bytes.chunks_exact(4).map(|texel| texel.try_into().unwrap()).collect())
 }
@@ -189,7 +193,7 @@ fn what_a_device_cannot_do_is_an_error_and_not_a_crash() {
 fn memory_counts_what_is_made_and_destroyed() {
     let Some(mut backend) = gpu() else { return };
     let before = backend.memory();
-    let made = buffer(&mut backend, 1 << 20, BufferUse::Storage);
+    let made = buffer(&mut *backend, 1 << 20, BufferUse::Storage);
     assert_eq!(backend.memory().bytes, before.bytes + (1 << 20));
     backend.destroy(made.into());
     assert_eq!(backend.memory().bytes, before.bytes);
