@@ -1,7 +1,16 @@
-//! The suite that any TressFX backend must pass, and the tests across crates.
+//! The suite that any TressFX backend must pass, and what the tests across crates share.
+//!
+//! An engine's team writes, in `tests/conformance.rs` of its own repository:
+//!
+//! ```ignore
+//! tressfx_conformance::suite!(|| MyBackend::headless());
+//! ```
+//!
+//! which is one `#[test]` for each case of [`suite`].
 
 pub mod render;
 pub mod sim;
+pub mod suite;
 
 use tressfx_core::backend::Backend;
 use tressfx_core::pass::{PassList, Ticket};
