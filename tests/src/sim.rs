@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Quat, Vec3, Vec4};
-use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::{self, AssetFormat, HairAsset};
 use tressfx_core::backend::Backend;
 use tressfx_core::builtin::Builtin;
@@ -13,12 +12,10 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
 use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
 
-use crate::gpu;
-
 /// A simulation and the GPU that it runs on.
 pub struct Rig {
     /// The GPU.
-    pub backend: WgpuBackend,
+    pub backend: Box<dyn Backend>,
     /// The simulation.
     pub sim: HairSim,
     /// What it simulates.
@@ -26,21 +23,15 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// One section; `None` where tests run without a GPU.
-    pub fn new(strands: Strands, params: SimParams, capsules: &[Capsule]) -> Option<Self> {
-        Self::with_sections(vec![(strands, params)], capsules)
-    }
-
-    /// Several sections; `None` where tests run without a GPU.
+    /// A simulation of these sections.
     ///
     /// # Panics
     /// If the simulation cannot be made.
-    pub fn with_sections(sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Option<Self> {
-        let mut backend = gpu()?;
+    pub fn new(mut backend: Box<dyn Backend>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
         let descs: Vec<_> =
             sections.iter().map(|(strands, params)| SectionDesc { strands, params: params.clone() }).collect();
-        let sim = HairSim::new(&mut backend, &descs, capsules).expect("the simulation is made");
-        Some(Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() })
+        let sim = HairSim::new(&mut *backend, &descs, capsules).expect("the simulation is made");
+        Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() }
     }
 
     /// Runs what `record` records.

@@ -1,7 +1,10 @@
 //! Contacts that are hard to resolve: strands that point nearly at the centre of a ball, where the circle that a vertex can
 //! reach nearly touches the ball, and strands that barely reach out of it.
 
+mod support;
+
 use glam::{Quat, Vec3, Vec4};
+use support::rig;
 use tressfx_conformance::sim::{Motion, Random, Rig, strand_errors, strands_of, wide};
 use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::shape::Capsule;
@@ -87,7 +90,7 @@ fn hard_contacts_match_the_reference_for_every_strand() {
     let head = Pose { rotation: Quat::from_rotation_y(0.7), translation: Vec3::new(0.02, -0.01, 0.03) };
     for vertices in VERTICES {
         for (name, strands) in [("aimed", aimed(vertices)), ("buried", buried(vertices))] {
-            let Some(mut rig) = Rig::new(strands, limp(), &[BALL]) else { return };
+            let Some(mut rig) = rig(strands, limp(), &[BALL]) else { return };
             for (gpu, reference) in collided(&mut rig, head) {
                 let errors = strand_errors(&rig.strands[0], &gpu, &reference);
                 let (median, largest) = (errors[GUIDES / 2], errors[GUIDES - 1]);
@@ -104,7 +107,7 @@ fn hard_contacts_match_the_reference_for_every_strand() {
 #[test]
 fn strands_that_point_at_a_centre_get_out() {
     for vertices in VERTICES {
-        let Some(mut rig) = Rig::new(aimed(vertices), limp(), &[BALL]) else { return };
+        let Some(mut rig) = rig(aimed(vertices), limp(), &[BALL]) else { return };
         let motion = Motion::still(&rig.strands[0]);
         let deepest = [0.05, 0.1, 0.25].map(|seconds| {
             rig.play(&motion, seconds, 60);
