@@ -9,6 +9,7 @@
 //! which is one `#[test]` for each case of [`suite`].
 
 pub mod render;
+pub mod show;
 pub mod sim;
 pub mod suite;
 
