@@ -89,9 +89,9 @@ impl Scene {
 }
 
 /// A scene on a backend.
-pub struct Show {
+pub struct Show<B> {
     /// The GPU.
-    pub backend: Box<dyn Backend>,
+    pub backend: B,
     /// The simulation.
     pub sim: HairSim,
     scene: Scene,
@@ -105,11 +105,11 @@ pub struct Show {
     frame: u32,
 }
 
-impl Show {
+impl<B: Backend> Show<B> {
     /// # Panics
     /// If the backend cannot make what the scene needs.
-    pub fn new(mut backend: Box<dyn Backend>, scene: &Scene) -> Self {
-        let gpu = &mut *backend;
+    pub fn new(mut backend: B, scene: &Scene) -> Self {
+        let gpu: &mut dyn Backend = &mut backend;
         let desc = SectionDesc { strands: &scene.strands, params: scene.params.clone() };
         let sim = HairSim::new(gpu, &[desc], &scene.capsules).expect("a simulation");
         let view = scene.view();
@@ -166,7 +166,7 @@ impl Show {
         let mut list = PassList::new();
         let counters = self.renderer.read_counters(&mut list);
         let picture = list.read_texture(self.targets.color);
-        let picture = run_and_read(&mut *self.backend, &list, picture);
+        let picture = run_and_read(&mut self.backend, &list, picture);
         (picture, Counters::from_bytes(&self.backend.read(counters).expect("the list has run")))
     }
 
@@ -174,6 +174,6 @@ impl Show {
     pub fn positions(&mut self) -> Vec<u8> {
         let mut list = PassList::new();
         let tickets: Vec<Ticket> = self.sim.read_positions(&mut list);
-        run_and_read(&mut *self.backend, &list, tickets[0])
+        run_and_read(&mut self.backend, &list, tickets[0])
     }
 }

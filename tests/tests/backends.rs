@@ -48,7 +48,7 @@ fn scenes(groom: &Scene) -> Vec<Scene> {
         .collect()
 }
 
-fn shown(backend: Box<dyn Backend>, scene: &Scene) -> (Picture, Vec<u8>, u32) {
+fn shown(backend: impl Backend, scene: &Scene) -> (Picture, Vec<u8>, u32) {
     let mut show = Show::new(backend, scene);
     show.play(FRAMES);
     let (picture, counters) = show.picture();
@@ -58,9 +58,9 @@ fn shown(backend: Box<dyn Backend>, scene: &Scene) -> (Picture, Vec<u8>, u32) {
 
 /// What both backends make of a scene; `None` where there is no GPU.
 fn compared(scene: &Scene) -> Option<Comparison> {
-    let (a, a_positions, hair) = shown(gpu()?, scene);
+    let (a, a_positions, hair) = shown(*gpu()?, scene);
     let vulkan = VulkanBackend::open(&VulkanOptions { validation: true, ..Default::default() }).unwrap();
-    let (b, b_positions, _) = shown(Box::new(vulkan), scene);
+    let (b, b_positions, _) = shown(vulkan, scene);
     assert!(hair * 50 > SIZE[0] * SIZE[1], "{}: {hair} pixels with hair", scene.name);
     assert!(a_positions == b_positions, "{}: positions differ", scene.name);
     Some(compare(&a, &b).unwrap())
