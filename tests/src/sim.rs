@@ -108,6 +108,8 @@ pub struct Motion {
     pub wind: Option<Wind>,
     /// Metres that a unit of the file stands for.
     pub metres_per_unit: f32,
+    /// How far into its swings it begins, s.
+    pub start: f64,
 }
 
 impl Motion {
@@ -124,12 +126,12 @@ impl Motion {
     /// A head that is shaken and turned, in a wind.
     pub fn wild(strands: &Strands) -> Self {
         let wind = Some(Wind::new(Vec3::new(2.0, 0.3, -1.0)));
-        Self { shake: 0.04, turn: 0.5, wind, metres_per_unit: strands.metres_per_unit }
+        Self { shake: 0.04, wind, ..Self::turning(strands) }
     }
 
     /// The pose of the head at a time in seconds.
     pub fn head(&self, seconds: f64) -> Pose {
-        let swing = |hertz: f64| (std::f64::consts::TAU * hertz * seconds).sin() as f32;
+        let swing = |hertz: f64| (std::f64::consts::TAU * hertz * (self.start + seconds)).sin() as f32;
         let rotation = if self.turn == 0.0 { Quat::IDENTITY } else { Quat::from_rotation_y(self.turn * swing(1.0)) };
         Pose { rotation, translation: Vec3::X * (self.shake * swing(3.0) / self.metres_per_unit) }
     }

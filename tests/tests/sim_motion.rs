@@ -80,40 +80,41 @@ fn the_same_run_twice_is_equal_to_the_bit() {
 }
 
 /// Tips after 2 s at a frame rate.
-fn tips_at(strands: &Strands, motion: &Motion, fps: u32, capsules: &[Capsule]) -> Option<Vec<glam::Vec3>> {
-    let mut rig = rig(strands.clone(), SimParams::default(), capsules)?;
+fn tips_at(strands: &Strands, motion: &Motion, fps: u32) -> Option<Vec<glam::Vec3>> {
+    let mut rig = rig(strands.clone(), SimParams::default(), &[])?;
     rig.play(motion, 2.0, fps);
     assert!((rig.sim.time() - 2.0).abs() < 1e-9, "{fps} fps simulate {} s", rig.sim.time());
     let positions = rig.positions(0);
     Some(tips(strands, &positions))
 }
 
-fn frame_rates_agree(name: &str, strands: &Strands, capsules: &[Capsule]) {
-    let motion = Motion::wild(strands);
-    let Some(at_60) = tips_at(strands, &motion, 60, capsules) else { return };
-    for fps in [30, 144] {
-        let distances = tip_distances(strands, &at_60, &tips_at(strands, &motion, fps, capsules).unwrap());
+/// 30, 60 and 144 frames a second against 120, where the head is known at every sub-step. The motion starts where it neither
+/// has its highest speed nor its highest acceleration: at the other end of so many periods either would hide errors.
+fn frame_rates_agree(name: &str, strands: &Strands, share: usize, allowed: f64) {
+    let motion = Motion { start: 1.0 / 24.0, ..Motion::wild(strands) };
+    let Some(exact) = tips_at(strands, &motion, 120) else { return };
+    for fps in [30, 60, 144] {
+        let distances = tip_distances(strands, &exact, &tips_at(strands, &motion, fps).unwrap());
         let at = |share: usize| distances[(distances.len() - 1) * share / 100];
         let (median, most, last) = (at(50), at(99), at(100));
-        println!(
-            "{name}: {fps} against 60 fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand"
-        );
-        // One in a hundred may buckle to another side.
-        assert!(most < 0.02, "{name} at {fps} fps: {most}");
+        println!("{name}: {fps} fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand");
+        assert!(at(share) < allowed, "{name} at {fps} fps: {}", at(share));
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_are() {
     for name in ["straight", "wavy", "curly", "long", "fur"] {
-        frame_rates_agree(name, &builtin(name, 200), &[]);
+        frame_rates_agree(name, &builtin(name, 200), 100, 0.02);
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_of_real_grooms_are() {
     for path in REAL {
-        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, &[]));
+        // Of the mohawk some strands are shorter than what the head moves in a sub-step, and some are unstable.
+        let (share, allowed) = if path == REAL[0] { (99, 0.03) } else { (100, 0.02) };
+        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share, allowed));
     }
 }
 

@@ -92,8 +92,10 @@ pub enum Layout {
     Target,
     /// As shaders read it.
     Sampled,
-    /// As it is copied.
-    Copied,
+    /// As it is copied from.
+    CopySource,
+    /// As it is copied to.
+    CopyTarget,
 }
 
 impl Layout {
@@ -101,8 +103,10 @@ impl Layout {
     pub fn of(access: Access) -> Self {
         if access.contains(Access::TARGET) {
             Self::Target
-        } else if access.0 & (Access::COPY_READ | Access::COPY_WRITE).0 != 0 {
-            Self::Copied
+        } else if access.contains(Access::COPY_WRITE) {
+            Self::CopyTarget
+        } else if access.contains(Access::COPY_READ) {
+            Self::CopySource
         } else {
             Self::Sampled
         }
@@ -130,11 +134,11 @@ impl Hazards {
         self.states.remove(&resource);
     }
 
-    /// Says in which use an imported resource is found.
-    pub fn assume(&mut self, resource: Resource, access: Access) {
-        let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
-        let seen = if access.writes() { Access::NONE } else { access };
-        self.states.insert(resource, State { written: access, read: seen, seen, layout });
+    /// Gives an imported resource back to its owner: what was done to it, which the owner's next use has to wait for. It is
+    /// forgotten.
+    pub fn release(&mut self, resource: Resource) -> Access {
+        let state = self.states.remove(&resource).unwrap_or_default();
+        state.written | state.read
     }
 
     /// What must be waited for before `resource` is used so.
@@ -272,13 +276,14 @@ mod tests {
     }
 
     #[test]
-    fn an_imported_texture_is_found_as_it_was_left() {
-        let mut slots = Slots::default();
-        let a = Resource::Texture(slots.insert(()).into());
+    fn what_is_given_back_begins_anew() {
+        let [a, _] = ids();
         let mut hazards = Hazards::default();
-        hazards.assume(a, Access::RASTER_READ);
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), None, "it is there for this use already");
-        assert_eq!(hazards.touch(a, Access::TARGET), wait(a, Access::RASTER_READ, Access::TARGET));
+        hazards.touch(a, Access::COMPUTE_WRITE);
+        hazards.touch(a, Access::RASTER_READ);
+        assert_eq!(hazards.release(a), Access::COMPUTE_WRITE | Access::RASTER_READ);
+        assert_eq!(hazards.release(a), Access::NONE);
+        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
     }
 
     #[test]

@@ -111,6 +111,13 @@ impl<T> Slots<T> {
         self.get(slot).unwrap_or_else(|| panic!("{what}: the id {slot:?} is stale, its resource was destroyed"))
     }
 
+    /// Takes all values out, in no particular order; all ids are stale from now on.
+    pub fn drain(&mut self) -> impl Iterator<Item = T> {
+        let live = self.entries.iter().enumerate().filter(|(_, entry)| entry.1.is_some());
+        let slots: Vec<_> = live.map(|(index, entry)| Slot { index: index as u32, generation: entry.0 }).collect();
+        slots.into_iter().filter_map(|slot| self.remove(slot))
+    }
+
     /// All values, in no particular order.
     pub fn values(&self) -> impl Iterator<Item = &T> {
         self.entries.iter().filter_map(|entry| entry.1.as_ref())

@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Simulate(Simulate),
     /// Convert a groom file; the ending of OUT chooses the format (.tfx: 4.x binary, .txt: 2013 text)
     Convert(Convert),
+    /// Say how far two pictures differ: FLIP, PSNR, largest step, share of pixels
+    Compare(Compare),
     /// List the graphics adapters of this machine
     Adapters,
 }
@@ -45,6 +47,22 @@ pub(crate) struct Convert {
     pub(crate) input: String,
     /// The file to write
     pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// A .png of 8 bits a channel
+    #[arg(value_name = "A.png")]
+    pub(crate) a: PathBuf,
+    /// Another, of the same size
+    #[arg(value_name = "B.png")]
+    pub(crate) b: PathBuf,
+    /// Write JSON: an object with flip_mean, psnr_db (null for equal pictures), max_difference and differing_share
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Where to write a picture of FLIP at every pixel
+    #[arg(long, value_name = "FILE.png", value_parser = png)]
+    pub(crate) heat_map: Option<PathBuf>,
 }
 
 /// What `render` and `simulate` share.
@@ -83,6 +101,18 @@ pub(crate) struct Scene {
     /// Print the passes of a frame as a table
     #[arg(long)]
     pub(crate) print_passes: bool,
+    /// Print what each pass costs as a table; every frame is drawn
+    #[arg(long)]
+    pub(crate) profile: bool,
+    /// Write when what ran, for chrome://tracing and Perfetto; every frame is drawn
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Let the Vulkan validation layer watch: what it says is an error
+    #[arg(long)]
+    pub(crate) validate: bool,
+    /// Keep compiled pipelines of raw Vulkan in this file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) pipeline_cache: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -134,6 +164,10 @@ pub(crate) enum Motion {
 pub(crate) enum BackendName {
     /// Vulkan, Metal or Direct3D 12 through wgpu
     Wgpu,
+    /// Raw Vulkan 1.3
+    Vulkan,
+    /// One after the other, with a comparison of their pictures
+    Both,
 }
 
 /// `N` finite numbers between commas.
@@ -159,6 +193,12 @@ fn size(text: &str) -> Result<[u32; 2], String> {
         Err(error) => Err(format!("{text}: {error}")),
     };
     Ok([edge(width)?, edge(height)?])
+}
+
+fn png(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    if is_png { Ok(path) } else { Err("the ending must be .png".to_owned()) }
 }
 
 fn fps(text: &str) -> Result<f64, String> {
@@ -188,6 +228,7 @@ mod tests {
         assert_eq!(vector("1, -2,3.5"), Ok(Vec3::new(1.0, -2.0, 3.5)));
         assert!(vector("1,2").unwrap_err().contains("not 2"));
         assert!(vector("1,2,inf").unwrap_err().contains("not finite"));
+        assert!(png("map.jpg").unwrap_err().contains(".png") && png("map.PNG").is_ok());
         assert!(fps("0").unwrap_err().contains("between"));
     }
 }

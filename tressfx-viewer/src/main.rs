@@ -1,9 +1,11 @@
-//! The program `tressfx`: simulates, renders, inspects and converts grooms. It holds no hair logic.
+//! The program `tressfx`: simulates, renders, inspects and converts grooms, and compares pictures of them. It holds no hair logic.
 
 #![forbid(unsafe_code)]
 
+mod backend;
 mod camera;
 mod cli;
+mod compare;
 mod convert;
 mod groom;
 mod info;
@@ -16,10 +18,10 @@ mod run;
 mod simulate;
 mod stats;
 mod studio;
+mod trace;
 
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
 use clap::Parser;
 
 use crate::cli::{Cli, Command};
@@ -31,7 +33,8 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Convert(args) => convert::run(&args),
-        Command::Adapters => adapters(),
+        Command::Adapters => backend::adapters(),
+        Command::Compare(args) => compare::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -40,16 +43,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-fn adapters() -> Result<()> {
-    let adapters = tressfx_backend_wgpu::adapters();
-    if adapters.is_empty() {
-        bail!(
-            "{}",
-            tressfx_backend_wgpu::WgpuBackend::headless().err().map_or(String::new(), |error| error.to_string())
-        );
-    }
-    adapters.iter().for_each(|adapter| println!("{adapter}"));
-    Ok(())
 }

@@ -1,5 +1,7 @@
 //! `tressfx render`.
 
+use std::time::Instant;
+
 use anyhow::Result;
 use tressfx_core::mesh::Mesh;
 
@@ -16,10 +18,12 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     let mut run = Run::new(&args.scene)?;
     let mut studio = Studio::new(&mut run, args, mesh)?;
     // Times of one frame say little: whoever asks for figures gets every frame drawn.
-    let draw_all = output.wants_every_frame() || args.scene.stats.is_some();
+    let measured = args.scene.stats.is_some() || args.scene.profile || args.scene.trace.is_some();
+    let draw_all = output.wants_every_frame() || measured;
     let progress = Progress::new(args.scene.frames);
     for frame in 0..args.scene.frames {
         let last = frame + 1 == args.scene.frames;
+        let start = Instant::now();
         let mut list = run.step(&args.scene)?;
         let drawn = (draw_all || last).then(|| studio.draw(&mut list, run.head(&args.scene), run.sim.head_lead()));
         let wanted = output.wants_every_frame() || last;
@@ -27,6 +31,7 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         if args.scene.print_passes && last {
             println!("{}", passes::table(&list));
         }
+        run.trace.cpu("write the list", frame + 1, start);
         run.submit(&list)?;
         if let Some(counters) = drawn {
             let retake = studio.take_stock(&mut run, counters)?;
@@ -39,8 +44,5 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     }
     drop(progress);
     output.finish(args.scene.fps)?;
-    match &args.scene.stats {
-        Some(path) => run.stats(studio.drawn)?.write(path),
-        None => Ok(()),
-    }
+    run.report(&args.scene, studio.drawn)
 }

@@ -4,27 +4,29 @@ use anyhow::{Context, Result};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
-use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::Backend;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::Pose;
 use tressfx_sim::metrics::{self, EdgeError};
 use tressfx_sim::{HairSim, SectionDesc, StepInput, Wind};
 
+use crate::backend;
 use crate::cli::{self, BackendName};
 use crate::groom::Groom;
 use crate::motion;
 use crate::params::Params;
 use crate::stats::{GroomStats, PassTimes, RenderStats, SimStats, Stats};
+use crate::trace::Trace;
 
 /// A groom on its way through time.
-#[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) groom: Groom,
     pub(crate) params: Params,
-    pub(crate) backend: WgpuBackend,
+    pub(crate) backend: Box<dyn Backend>,
     pub(crate) sim: HairSim,
     pub(crate) times: PassTimes,
+    pub(crate) trace: Trace,
+    backend_name: &'static str,
     /// Frames that were simulated.
     frame: u32,
     wind: Option<Wind>,
@@ -34,9 +36,7 @@ impl Run {
     pub(crate) fn new(args: &cli::Scene) -> Result<Self> {
         let groom = Groom::load(&args.grooms, args.follow)?;
         let params = Params::read(args.params.as_deref(), groom.sections.len())?;
-        let mut backend = match args.backend {
-            BackendName::Wgpu => WgpuBackend::headless_on(args.adapter.as_deref())?,
-        };
+        let mut backend = backend::open(args)?;
         let sections: Vec<_> = groom
             .sections
             .iter()
@@ -44,14 +44,19 @@ impl Run {
             .map(|(index, strands)| SectionDesc { strands, params: params.sim(index).clone() })
             .collect();
         let capsules = [&groom.capsules[..], &params.capsule].concat();
-        let mut sim = HairSim::new(&mut backend, &sections, &capsules)?;
+        let mut sim = HairSim::new(&mut *backend, &sections, &capsules)?;
         sim.set_clock_params(params.clock)?;
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
             (Some(velocity), None) => Some(Wind::new(velocity)),
             (None, wind) => wind,
         };
-        Ok(Self { groom, params, backend, sim, times: PassTimes::default(), frame: 0, wind })
+        let backend_name = match args.backend {
+            BackendName::Vulkan => "vulkan",
+            BackendName::Wgpu | BackendName::Both => "wgpu",
+        };
+        let (times, trace) = (PassTimes::default(), Trace::new());
+        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind })
     }
 
     /// Records the next frame of the simulation.
@@ -70,8 +75,11 @@ impl Run {
 
     /// Runs a list and keeps the times of its passes.
     pub(crate) fn submit(&mut self, list: &PassList) -> Result<()> {
+        let start = Instant::now();
         self.backend.run(list)?;
+        self.trace.cpu("run", self.frame, start);
         let timings = self.backend.timings();
+        self.trace.gpu(&timings, self.frame, start);
         self.times.add(&timings);
         Ok(())
     }
@@ -94,12 +102,26 @@ impl Run {
         Ok(poses)
     }
 
+    /// Tells what was asked for: a table of costs, a trace, figures.
+    pub(crate) fn report(&mut self, args: &cli::Scene, render: RenderStats) -> Result<()> {
+        if args.profile {
+            println!("{}", self.times.table());
+        }
+        if let Some(path) = &args.trace {
+            self.trace.write(path)?;
+        }
+        match &args.stats {
+            Some(path) => self.stats(render)?.write(path),
+            None => Ok(()),
+        }
+    }
+
     /// Everything that is known about the run so far.
-    pub(crate) fn stats(&mut self, render: RenderStats) -> Result<Stats> {
+    fn stats(&mut self, render: RenderStats) -> Result<Stats> {
         let sim = self.sim_stats()?;
         Ok(Stats {
             groom: GroomStats { strands: self.groom.strands(), vertices: self.groom.vertices() },
-            backend: "wgpu",
+            backend: self.backend_name,
             adapter: self.backend.caps().adapter.clone(),
             frames: self.frame,
             passes: self.times.summary(),

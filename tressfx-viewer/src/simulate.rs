@@ -29,10 +29,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     for ((strands, pose), file) in run.groom.sections.iter().zip(&poses).zip(&files) {
         asset::write(file, &strands.pose_asset(pose, args.all)?, Some(WriteFormat::TressFx4))?;
     }
-    match &args.scene.stats {
-        Some(path) => run.stats(RenderStats::default())?.write(path),
-        None => Ok(()),
-    }
+    run.report(&args.scene, RenderStats::default())
 }
 
 /// One file a section.

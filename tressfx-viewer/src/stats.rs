@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use comfy_table::{Table, presets};
 use serde::Serialize;
 use tressfx_core::backend::Timing;
 
@@ -69,27 +70,63 @@ impl Stats {
 #[derive(Debug, Default)]
 pub(crate) struct PassTimes {
     /// In the order in which the labels first ran.
-    passes: Vec<(&'static str, Vec<f64>)>,
+    passes: Vec<PassCost>,
+}
+
+/// The times of one label, and what it cost otherwise when it ran last.
+#[derive(Debug)]
+struct PassCost {
+    label: &'static str,
+    milliseconds: Vec<f64>,
+    bytes: u64,
+    invocations: Option<u64>,
 }
 
 impl PassTimes {
     pub(crate) fn add(&mut self, timings: &[Timing]) {
         for timing in timings {
             let milliseconds = timing.nanoseconds * 1e-6;
-            match self.passes.iter_mut().find(|(label, _)| *label == timing.label) {
-                Some((_, times)) => times.push(milliseconds),
-                None => self.passes.push((timing.label, vec![milliseconds])),
+            let &Timing { label, bytes, invocations, .. } = timing;
+            match self.passes.iter_mut().find(|pass| pass.label == label) {
+                Some(pass) => {
+                    pass.milliseconds.push(milliseconds);
+                    (pass.bytes, pass.invocations) = (bytes, invocations);
+                }
+                None => {
+                    let milliseconds = vec![milliseconds];
+                    self.passes.push(PassCost { label, milliseconds, bytes, invocations });
+                }
             }
         }
     }
 
     pub(crate) fn summary(&self) -> Vec<PassStats> {
-        let summarise = |(label, times): &(&'static str, Vec<f64>)| {
-            let mut times = times.clone();
+        let summarise = |pass: &PassCost| {
+            let mut times = pass.milliseconds.clone();
             times.sort_by(f64::total_cmp);
-            PassStats { label, median_ms: times[times.len() / 2], min_ms: times[0], runs: times.len() }
+            PassStats { label: pass.label, median_ms: times[times.len() / 2], min_ms: times[0], runs: times.len() }
         };
         self.passes.iter().map(summarise).collect()
+    }
+}
+
+impl PassTimes {
+    /// One row a label: `--profile`.
+    pub(crate) fn table(&self) -> String {
+        let mut table = Table::new();
+        table.load_style(presets::ASCII_MARKDOWN);
+        table.set_header(["pass", "runs", "median ms", "least ms", "invocations", "MB bound"]);
+        for (pass, times) in self.passes.iter().zip(self.summary()) {
+            table.add_row([
+                pass.label.to_owned(),
+                times.runs.to_string(),
+                format!("{:.4}", times.median_ms),
+                format!("{:.4}", times.min_ms),
+                pass.invocations.map_or_else(|| String::from("-"), |count| count.to_string()),
+                format!("{:.3}", pass.bytes as f64 * 1e-6),
+            ]);
+        }
+        if self.passes.is_empty() { String::from("the device cannot time passes") } else { table.to_string() }
     }
 }
 

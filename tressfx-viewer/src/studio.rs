@@ -1,7 +1,7 @@
 //! Where pictures are taken: targets, lights, backdrop, the mesh that hair grows on, and the renderer.
 
 use anyhow::Result;
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{Pose, View};
@@ -33,7 +33,7 @@ pub(crate) struct Studio {
 impl Studio {
     pub(crate) fn new(run: &mut Run, args: &Render, mesh: Option<Mesh>) -> Result<Self> {
         let view = args.camera.view(&run.groom.rest(), args.size);
-        let backend = &mut run.backend;
+        let backend = &mut *run.backend;
         let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size: args.size, format });
         let targets = Targets { color: texture("picture", TARGET)?, depth: texture("depth", Format::Depth32F)? };
         let mut uploads = PassList::new();
@@ -76,7 +76,7 @@ impl Studio {
             peak_gpu_bytes: 0,
         };
         let before = self.renderer.capacity();
-        self.renderer.observe(&mut run.backend, &counters)?;
+        self.renderer.observe(&mut *run.backend, &counters)?;
         Ok(self.renderer.capacity() > before)
     }
 

@@ -1,0 +1,144 @@
+//! What has to be waited for becomes one `vkCmdPipelineBarrier2`.
+
+use ash::vk;
+use tressfx_core::hazards::{Access, Layout};
+use tressfx_core::id::Resource;
+
+use crate::VulkanBackend;
+use crate::device::Gpu;
+use crate::resource::{Import, Owner, Texture};
+use crate::tables::{Scope, image_layout, scope, whole, writes};
+
+/// The barrier before one command. Buffers share one memory barrier; each texture has its own, for its layout.
+#[derive(Debug, Default)]
+pub(crate) struct Barrier {
+    before: Scope,
+    after: Scope,
+    images: Vec<vk::ImageMemoryBarrier2<'static>>,
+    left_out: bool,
+}
+
+impl Barrier {
+    /// A buffer is used otherwise.
+    pub(crate) fn buffer(&mut self, before: Scope, after: Scope) {
+        self.before = (self.before.0 | before.0, self.before.1 | writes(before.1));
+        self.after = (self.after.0 | after.0, self.after.1 | after.1);
+    }
+
+    /// A texture is used otherwise; empty `before`: its contents are not needed.
+    pub(crate) fn texture(&mut self, texture: &Texture, before: Access, after: Access) {
+        let layout = |access| image_layout(Layout::of(access), texture.format);
+        let old = if before.is_empty() { vk::ImageLayout::UNDEFINED } else { layout(before) };
+        let format = Some(texture.format);
+        self.image(texture, (scope(before, format), old), (scope(after, format), layout(after)));
+    }
+
+    /// A texture comes from its owner.
+    pub(crate) fn acquire(&mut self, texture: &Texture, found: &Import, after: Access) {
+        let layout = image_layout(Layout::of(after), texture.format);
+        self.image(texture, ((found.stage, found.access), found.layout), (scope(after, Some(texture.format)), layout));
+    }
+
+    /// A texture goes back to its owner.
+    pub(crate) fn release(&mut self, texture: &Texture, before: Access, left: &Import) {
+        let layout = image_layout(Layout::of(before), texture.format);
+        self.image(texture, (scope(before, Some(texture.format)), layout), ((left.stage, left.access), left.layout));
+    }
+
+    fn image(&mut self, texture: &Texture, before: (Scope, vk::ImageLayout), after: (Scope, vk::ImageLayout)) {
+        self.images.push(
+            vk::ImageMemoryBarrier2::default()
+                .src_stage_mask(before.0.0)
+                .src_access_mask(writes(before.0.1))
+                .old_layout(before.1)
+                .dst_stage_mask(after.0.0)
+                .dst_access_mask(after.0.1)
+                .new_layout(after.1)
+                .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                .image(texture.image)
+                .subresource_range(whole(texture.format)),
+        );
+    }
+
+    /// Writes none from now on.
+    pub(crate) fn leave_out(&mut self) {
+        self.left_out = true;
+    }
+
+    /// Writes it, if there is anything to wait for, and empties it. Says whether it was written.
+    pub(crate) fn record(&mut self, gpu: &Gpu, commands: vk::CommandBuffer) -> bool {
+        let waits = self.before.0 != vk::PipelineStageFlags2::NONE;
+        if self.left_out || (!waits && self.images.is_empty()) {
+            return false;
+        }
+        let memory = [vk::MemoryBarrier2::default()
+            .src_stage_mask(self.before.0)
+            .src_access_mask(self.before.1)
+            .dst_stage_mask(self.after.0)
+            .dst_access_mask(self.after.1)];
+        let info = vk::DependencyInfo::default()
+            .memory_barriers(if waits { &memory } else { &[] })
+            .image_memory_barriers(&self.images);
+        // SAFETY: the command buffer is being recorded, outside of a render pass, and the images are alive.
+        unsafe { gpu.device.cmd_pipeline_barrier2(commands, &info) };
+        (self.before, self.after) = Default::default();
+        self.images.clear();
+        true
+    }
+}
+
+impl VulkanBackend {
+    /// Adds what has to be waited for before `resource` is used so.
+    pub(crate) fn wait_for(&mut self, resource: Resource, access: Access) {
+        let wait = self.hazards.touch(resource, access);
+        let first = !self.borrowed.contains(&resource);
+        match resource {
+            Resource::Buffer(id) => match &self.buffers.expect(id.0, "record").owner {
+                Owner::Engine { found, .. } if first => {
+                    self.borrowed.push(resource);
+                    self.barrier.buffer((found.stage, found.access), scope(access, None));
+                }
+                _ => wait.iter().for_each(|wait| {
+                    self.barrier.buffer(scope(wait.before, None), scope(wait.after, None));
+                }),
+            },
+            Resource::Texture(id) => {
+                let texture = self.textures.expect(id.0, "record");
+                match &texture.owner {
+                    Owner::Engine { found, .. } if first => {
+                        self.borrowed.push(resource);
+                        self.barrier.acquire(texture, found, access);
+                    }
+                    _ => wait.iter().for_each(|wait| self.barrier.texture(texture, wait.before, wait.after)),
+                }
+            }
+        }
+    }
+
+    /// Gives what was borrowed back, in the use that was promised.
+    pub(crate) fn give_back(&mut self, commands: vk::CommandBuffer) {
+        for resource in std::mem::take(&mut self.borrowed) {
+            let before = self.hazards.release(resource);
+            match resource {
+                Resource::Buffer(id) => {
+                    if let Owner::Engine { left, .. } = &self.buffers.expect(id.0, "record").owner {
+                        self.barrier.buffer(scope(before, None), (left.stage, left.access));
+                    }
+                }
+                Resource::Texture(id) => {
+                    let texture = self.textures.expect(id.0, "record");
+                    if let Owner::Engine { left, .. } = &texture.owner {
+                        self.barrier.release(texture, before, left);
+                    }
+                }
+            }
+        }
+        self.write_barrier(commands);
+    }
+
+    /// Writes what was added since the last one.
+    pub(crate) fn write_barrier(&mut self, commands: vk::CommandBuffer) {
+        self.barriers += u64::from(self.barrier.record(&self.gpu, commands));
+    }
+}

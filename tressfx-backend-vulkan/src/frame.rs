@@ -1,0 +1,173 @@
+//! Recordings that the GPU may still be busy with, and what waits for it.
+//!
+//! Each recording ends by setting an event, which the CPU can ask for at any time: so nobody has to tell the backend when
+//! a frame begins, how many are in flight, or when one is over.
+
+use std::collections::VecDeque;
+
+use ash::vk;
+use tressfx_core::error::Result;
+use tressfx_core::id::Resource;
+
+use crate::VulkanBackend;
+use crate::device::Gpu;
+use crate::error::error;
+use crate::pipeline::Pipeline;
+use crate::resource::{Buffer, HostBuffer, Texture};
+use crate::timer::Queries;
+
+/// What is freed once the GPU cannot use it any more.
+#[derive(Debug)]
+pub(crate) enum Garbage {
+    Buffer(Buffer),
+    Texture(Texture),
+    Pipeline(Pipeline),
+    Set(vk::DescriptorPool, vk::DescriptorSet),
+}
+
+impl Gpu {
+    pub(crate) fn destroy(&self, garbage: Garbage) {
+        match garbage {
+            Garbage::Buffer(buffer) => self.destroy_buffer(buffer),
+            Garbage::Texture(texture) => self.destroy_texture(texture),
+            Garbage::Pipeline(pipeline) => self.destroy_pipeline(pipeline),
+            // SAFETY: the set is of that pool, and no recording that can still run binds it.
+            Garbage::Set(pool, set) => unsafe {
+                let _ = self.device.free_descriptor_sets(pool, &[set]);
+            },
+        }
+    }
+}
+
+/// What one recorded list needs until it has run.
+#[derive(Debug)]
+pub(crate) struct Recording {
+    /// Counts recordings.
+    pub(crate) number: u64,
+    /// Set once it has run.
+    event: vk::Event,
+    /// The bytes of its uploads; kept for the next list.
+    pub(crate) uploads: Option<HostBuffer>,
+    pub(crate) queries: Queries,
+    /// What it fills with zeros before their first use.
+    pub(crate) zeroed: Vec<Resource>,
+    garbage: Vec<Garbage>,
+}
+
+/// Recordings in flight, oldest first, and those that can be used again.
+#[derive(Debug, Default)]
+pub(crate) struct Frames {
+    in_flight: VecDeque<Recording>,
+    idle: Vec<Recording>,
+    recorded: u64,
+}
+
+impl Recording {
+    fn new(gpu: &Gpu) -> Result<Self> {
+        // SAFETY: the device is alive.
+        let event = unsafe { gpu.device.create_event(&vk::EventCreateInfo::default(), None) };
+        let event = event.map_err(|code| error(code, "hair.recording", 0))?;
+        gpu.name(event, "hair.recording");
+        let queries = Queries::default();
+        Ok(Self { number: 0, event, uploads: None, queries, zeroed: Vec::new(), garbage: Vec::new() })
+    }
+
+    /// Writes what tells the CPU that everything before it has run.
+    pub(crate) fn end(&self, gpu: &Gpu, commands: vk::CommandBuffer) {
+        // SAFETY: the command buffer is being recorded, outside of a render pass, and the event is not in use.
+        unsafe { gpu.device.cmd_set_event(commands, self.event, vk::PipelineStageFlags::ALL_COMMANDS) };
+    }
+
+    pub(crate) fn has_run(&self, gpu: &Gpu) -> bool {
+        // SAFETY: the event is alive.
+        unsafe { gpu.device.get_event_status(self.event) }.unwrap_or(false)
+    }
+
+    fn destroy(mut self, gpu: &Gpu) {
+        self.garbage.drain(..).for_each(|garbage| gpu.destroy(garbage));
+        self.uploads.into_iter().for_each(|uploads| gpu.free_host(uploads));
+        self.queries.destroy(gpu);
+        // SAFETY: the GPU has finished with it.
+        unsafe { gpu.device.destroy_event(self.event, None) };
+    }
+}
+
+impl Frames {
+    /// A recording to write to.
+    pub(crate) fn begin(&mut self, gpu: &Gpu) -> Result<Recording> {
+        let mut recording = self.idle.pop().map_or_else(|| Recording::new(gpu), Ok)?;
+        self.recorded += 1;
+        recording.number = self.recorded;
+        Ok(recording)
+    }
+
+    pub(crate) fn end(&mut self, recording: Recording) {
+        self.in_flight.push_back(recording);
+    }
+
+    /// Whether the recording of that number has run.
+    pub(crate) fn has_run(&self, gpu: &Gpu, number: u64) -> bool {
+        self.in_flight
+            .iter()
+            .find(|recording| recording.number == number)
+            .is_none_or(|recording| recording.has_run(gpu))
+    }
+
+    /// Makes a recording ready for its next use.
+    fn recycle(&mut self, gpu: &Gpu, mut recording: Recording) {
+        recording.garbage.drain(..).for_each(|garbage| gpu.destroy(garbage));
+        recording.zeroed.clear();
+        // SAFETY: it has run, so nothing sets the event any more.
+        let _ = unsafe { gpu.device.reset_event(recording.event) };
+        self.idle.push(recording);
+    }
+
+    pub(crate) fn destroy(&mut self, gpu: &Gpu) {
+        self.in_flight.drain(..).chain(self.idle.drain(..)).for_each(|recording| recording.destroy(gpu));
+    }
+}
+
+impl VulkanBackend {
+    /// Frees what finished recordings have kept. What was thrown away since is older recordings' too, so the oldest goes first.
+    pub(crate) fn collect(&mut self) {
+        while self.frames.in_flight.front().is_some_and(|recording| recording.has_run(&self.gpu)) {
+            let Some(mut recording) = self.frames.in_flight.pop_front() else { return };
+            self.timer.finish(&self.gpu, &mut recording);
+            self.frames.recycle(&self.gpu, recording);
+        }
+    }
+
+    /// Destroys something once everything that was recorded so far has run.
+    pub(crate) fn throw_away(&mut self, garbage: Garbage) {
+        self.collect();
+        match self.frames.in_flight.back_mut() {
+            Some(recording) => recording.garbage.push(garbage),
+            None => self.gpu.destroy(garbage),
+        }
+    }
+
+    /// Waits until the device has finished with everything. What was recorded before and never submitted must not be submitted
+    /// any more: its memory is taken back.
+    ///
+    /// An engine that records lists and throws its command buffer away calls this, or the memory of those lists is held
+    /// until the backend goes. No other thread may submit meanwhile.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn wait_idle(&mut self) -> Result<()> {
+        // SAFETY: the device is alive, and no queue of it is in use, as promised above.
+        let waited = unsafe { self.gpu.device.device_wait_idle() };
+        self.noted(waited.map_err(|code| error(code, "wait", 0)))?;
+        self.collect();
+        while let Some(mut recording) = self.frames.in_flight.pop_front() {
+            if recording.has_run(&self.gpu) {
+                self.timer.finish(&self.gpu, &mut recording);
+            } else {
+                self.not_zeroed.append(&mut recording.zeroed);
+                self.forget_reads(recording.number);
+            }
+            self.frames.recycle(&self.gpu, recording);
+        }
+        Ok(())
+    }
+}

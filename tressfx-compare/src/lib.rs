@@ -1,0 +1,172 @@
+//! How far two pictures differ: FLIP, PSNR, the largest step, the share of pixels, and a heat map. No GPU, and no hair.
+//!
+//! Pictures are 8-bit sRGB with straight alpha. What is seen (FLIP, PSNR, the heat map) is compared over a mid-grey
+//! ground, so that the colour of a transparent pixel does not count; `max_difference` and `differing_share` look at the
+//! bytes of all four channels.
+
+#![forbid(unsafe_code)]
+
+mod colour;
+mod filter;
+mod flip;
+
+use serde::Serialize;
+
+/// A picture of at least one pixel, four bytes each: red, green, blue and straight alpha, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    size: [u32; 2],
+    rgba: Vec<u8>,
+}
+
+/// Why there is nothing to compare.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Error {
+    /// The bytes are not those of a picture of this size.
+    #[error("{bytes} bytes are not an RGBA picture of {}x{} pixels", size[0], size[1])]
+    Bytes {
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// How many bytes there were.
+        bytes: usize,
+    },
+    /// The two pictures have different sizes.
+    #[error("the pictures have different sizes: {}x{} and {}x{}", .0[0], .0[1], .1[0], .1[1])]
+    Sizes([u32; 2], [u32; 2]),
+}
+
+/// What two pictures differ by. It is the same whichever comes first. As JSON, it is the four figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The mean of FLIP over all pixels, at 67 pixels a degree: 0 for equal pictures, 1 at most.
+    pub flip_mean: f64,
+    /// Peak signal-to-noise ratio of red, green and blue in decibels; none (in JSON, null) for equal pictures.
+    pub psnr_db: Option<f64>,
+    /// The largest difference of any channel, alpha too, in steps of 8 bits.
+    pub max_difference: u8,
+    /// The share, from 0 to 1, of the pixels that differ in any channel.
+    pub differing_share: f64,
+    /// FLIP of every pixel: black where there is no difference, then purple, orange and nearly white (magma).
+    #[serde(skip)]
+    pub heat_map: Picture,
+}
+
+impl Picture {
+    /// Takes `width * height * 4` bytes.
+    pub fn new(size: [u32; 2], rgba: Vec<u8>) -> Result<Self, Error> {
+        let needed = 4 * u128::from(size[0]) * u128::from(size[1]);
+        if needed == 0 || needed != rgba.len() as u128 {
+            return Err(Error::Bytes { size, bytes: rgba.len() });
+        }
+        Ok(Self { size, rgba })
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The bytes, four a pixel.
+    #[must_use]
+    pub fn rgba(&self) -> &[u8] {
+        &self.rgba
+    }
+
+    fn pixels(&self) -> impl ExactSizeIterator<Item = &[u8; 4]> {
+        self.rgba.as_chunks().0.iter()
+    }
+
+    /// What is seen over mid-grey, mixed as browsers and viewers do: in encoded values.
+    fn over_grey(&self) -> Vec<[u8; 3]> {
+        let mix = |&[r, g, b, alpha]: &[u8; 4]| {
+            let alpha = u32::from(alpha);
+            [r, g, b].map(|channel| ((u32::from(channel) * alpha + 128 * (255 - alpha) + 127) / 255) as u8)
+        };
+        self.pixels().map(mix).collect()
+    }
+}
+
+/// Compares two pictures of the same size. It takes some 90 bytes of memory a pixel.
+pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, Error> {
+    if a.size != b.size {
+        return Err(Error::Sizes(a.size, b.size));
+    }
+    let seen = [a, b].map(Picture::over_grey);
+    let flip = flip::differences(&seen[0], &seen[1], a.size[0] as usize);
+    let pixels = flip.len() as f64;
+    Ok(Comparison {
+        flip_mean: flip.iter().copied().map(f64::from).sum::<f64>() / pixels,
+        psnr_db: psnr(seen[0].as_flattened(), seen[1].as_flattened()),
+        max_difference: a.rgba.iter().zip(&b.rgba).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0),
+        differing_share: a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count() as f64 / pixels,
+        heat_map: Picture { size: a.size, rgba: flip.iter().flat_map(|difference| heat(*difference)).collect() },
+    })
+}
+
+fn psnr(a: &[u8], b: &[u8]) -> Option<f64> {
+    let squares: u64 = a.iter().zip(b).map(|(a, b)| u64::from(a.abs_diff(*b)).pow(2)).sum();
+    let mean = squares as f64 / a.len() as f64;
+    (squares > 0).then(|| 10.0 * (255.0 * 255.0 / mean).log10())
+}
+
+fn heat(difference: f32) -> [u8; 4] {
+    let colorous::Color { r, g, b } = colorous::MAGMA.eval_continuous(f64::from(difference));
+    [r, g, b, 255]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn even(size: [u32; 2], rgba: [u8; 4]) -> Picture {
+        Picture::new(size, rgba.repeat((size[0] * size[1]) as usize)).unwrap()
+    }
+
+    #[test]
+    fn equal_pictures_have_no_difference() {
+        let picture = even([7, 3], [10, 200, 30, 255]);
+        let comparison = compare(&picture, &picture).unwrap();
+        assert_eq!((comparison.flip_mean, comparison.psnr_db), (0.0, None));
+        assert_eq!((comparison.max_difference, comparison.differing_share), (0, 0.0));
+        assert_eq!(comparison.heat_map, even([7, 3], [0, 0, 4, 255]), "magma begins nearly black");
+    }
+
+    #[test]
+    fn one_changed_channel_of_one_pixel_is_counted() {
+        let before = even([8, 4], [100, 100, 100, 255]);
+        let mut after = before.clone();
+        after.rgba[4 * 13 + 1] = 80;
+        let comparison = compare(&before, &after).unwrap();
+        assert_eq!((comparison.max_difference, comparison.differing_share), (20, 1.0 / 32.0));
+        let mean_square = 20.0 * 20.0 / (32.0 * 3.0);
+        assert!((comparison.psnr_db.unwrap() - 10.0 * (65025.0_f64 / mean_square).log10()).abs() < 1e-9);
+        assert!(comparison.flip_mean > 0.0);
+    }
+
+    #[test]
+    fn what_cannot_be_seen_counts_as_bytes_only() {
+        let comparison = compare(&even([4, 4], [0, 0, 0, 0]), &even([4, 4], [255, 0, 0, 0])).unwrap();
+        assert_eq!((comparison.flip_mean, comparison.psnr_db), (0.0, None));
+        assert_eq!((comparison.max_difference, comparison.differing_share), (255, 1.0));
+        let half = even([1, 1], [0, 255, 128, 128]).over_grey();
+        assert_eq!(half, [[64, 192, 128]]);
+    }
+
+    #[test]
+    fn sizes_are_checked() {
+        let error = compare(&even([2, 3], [0; 4]), &even([3, 2], [0; 4])).unwrap_err();
+        assert_eq!(error.to_string(), "the pictures have different sizes: 2x3 and 3x2");
+        assert!(Picture::new([u32::MAX; 2], vec![0; 4]).unwrap_err().to_string().contains("4294967295x4294967295"));
+        assert!(Picture::new([0, 4], Vec::new()).is_err());
+    }
+
+    #[test]
+    fn as_json_it_is_the_four_figures() {
+        let comparison = compare(&even([2, 2], [0, 0, 0, 255]), &even([2, 2], [255; 4])).unwrap();
+        let json = serde_json::to_value(&comparison).unwrap();
+        let keys: Vec<_> = json.as_object().unwrap().keys().collect();
+        assert_eq!(keys, ["differing_share", "flip_mean", "max_difference", "psnr_db"]);
+        assert_eq!(json["psnr_db"], 0.0);
+    }
+}
