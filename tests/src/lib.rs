@@ -10,6 +10,7 @@
 
 pub mod faulty;
 pub mod render;
+pub mod show;
 pub mod sim;
 pub mod suite;
 

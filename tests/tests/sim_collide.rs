@@ -4,6 +4,7 @@
 mod support;
 
 use glam::{Quat, Vec3, Vec4};
+use support::rig;
 use tressfx_conformance::sim::{Motion, Random, Rig, strand_errors, strands_of, wide};
 use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::shape::Capsule;
