@@ -8,6 +8,7 @@
 //!
 //! which is one `#[test]` for each case of [`suite`].
 
+pub mod faulty;
 pub mod render;
 pub mod show;
 pub mod sim;
