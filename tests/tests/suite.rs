@@ -37,6 +37,19 @@ mod null {
     tressfx_conformance::suite!(|| Ok::<_, Error>(NullBackend::default()));
 }
 
+/// On the CPU, without passes.
+#[path = "suite/copies.rs"]
+mod copies;
+
+/// The suite on [`copies`].
+mod cpu {
+    use tressfx_core::error::Error;
+
+    use crate::copies::Copies;
+
+    tressfx_conformance::suite!(|| Ok::<_, Error>(Copies::new()));
+}
+
 /// What a backend lacks is skipped by name, and the rest is asked for all the same.
 mod lacking {
     use tressfx_conformance::suite::{CASES, Outcome, report};
