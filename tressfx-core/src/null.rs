@@ -1,5 +1,7 @@
 //! A backend that runs nothing and remembers what it was asked: the place to start one's own from.
 
+use std::sync::Arc;
+
 use crate::backend::{
     Backend, BufferDesc, Caps, ComputeDesc, Kernel, Memory, Need, RasterDesc, Record, TextureDesc, Timing,
 };
@@ -8,7 +10,7 @@ use crate::error::{Label, Result};
 use crate::hazards::Hazards;
 use crate::id::{BufferId, PipelineId, Resource, Slots, TextureId};
 use crate::pass::{Command, PassList, Ticket};
-use crate::shader::{SlotKind, Stages};
+use crate::shader::{Shader, SlotKind, Stages};
 
 /// Accepts what a device with its caps would accept, runs nothing.
 #[derive(Debug)]
@@ -21,6 +23,8 @@ pub struct NullBackend {
     memory: Memory,
     /// Labels of all passes that it was given, in order.
     pub ran: Vec<Label>,
+    /// The shaders of all pipelines that it was asked for, in order.
+    pub shaders: Vec<Arc<Shader>>,
     /// How many commands had to wait for an earlier one.
     pub barriers: usize,
 }
@@ -42,8 +46,14 @@ impl NullBackend {
             hazards: Hazards::default(),
             memory: Memory::default(),
             ran: Vec::new(),
+            shaders: Vec::new(),
             barriers: 0,
         }
+    }
+
+    fn kernel(&mut self, shader: &Arc<Shader>) -> Kernel {
+        self.shaders.push(shader.clone());
+        Kernel { pipeline: self.pipelines.insert(shader.label).into(), shader: shader.clone() }
     }
 
     fn assert_alive(&self, command: &Command) {
@@ -85,8 +95,7 @@ impl Backend for NullBackend {
         desc.shader.entry_point(naga::ShaderStage::Compute)?;
         let needs = [Need::Compute, Need::StorageBuffers(desc.shader.storage_buffers())];
         self.caps.check(desc.shader.label, &needs)?;
-        let pipeline = self.pipelines.insert(desc.shader.label).into();
-        Ok(Kernel { pipeline, shader: desc.shader.clone() })
+        Ok(self.kernel(&desc.shader))
     }
 
     fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
@@ -96,8 +105,7 @@ impl Backend for NullBackend {
         if desc.shader.slots.iter().any(|slot| slot.kind == SlotKind::ReadWrite && slot.stages.has(Stages::FRAGMENT)) {
             self.caps.check(desc.shader.label, &[Need::FragmentWrites])?;
         }
-        let pipeline = self.pipelines.insert(desc.shader.label).into();
-        Ok(Kernel { pipeline, shader: desc.shader.clone() })
+        Ok(self.kernel(&desc.shader))
     }
 
     fn destroy(&mut self, resource: Resource) {

@@ -1,16 +1,22 @@
 //! Shaders: WGSL composed, parsed and validated once, with their bindings reflected.
 //!
 //! A backend gets the naga module and emits what its API takes: wgpu takes it as it is, Vulkan writes SPIR-V from it.
+//! Engines that compile shaders by themselves are given them by [`Shader::emit`].
 
 mod bindings;
 mod compose;
+mod emit;
+mod glsl;
+mod hlsl;
 mod layout;
+mod msl;
 mod reflect;
 mod spirv;
 
 pub use bindings::Bindings;
 pub use compose::{Module, ShaderSource, Specialization, shared_modules};
-pub use layout::GpuStruct;
+pub use emit::{Emitted, Extra, Language};
+pub use layout::{FieldLayout, GpuStruct, StructLayout};
 pub use reflect::{ShaderSlot, SlotKind, Stages};
 pub use spirv::SpirvOptions;
 
@@ -23,6 +29,8 @@ pub struct Shader {
     pub label: Label,
     /// What it was specialised on, for people to read: features that are on, and constants.
     pub features: String,
+    /// The same, for programs.
+    pub specialization: Specialization,
     /// The composed WGSL.
     pub wgsl: String,
     /// The parsed module.
@@ -39,8 +47,10 @@ impl Shader {
     /// # Errors
     /// [`Error::Shader`] with the compiler's message.
     pub fn new(source: &ShaderSource, specialization: &Specialization) -> Result<Self> {
-        let label = source.label;
-        let wgsl = compose::compose(source, specialization)?;
+        Self::parse(source.label, specialization, compose::compose(source, specialization)?)
+    }
+
+    fn parse(label: Label, specialization: &Specialization, wgsl: String) -> Result<Self> {
         let module = naga::front::wgsl::parse_str(&wgsl)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
         // naga counts pack2x16float, which is core WGSL, among what a device may lack.
@@ -49,7 +59,8 @@ impl Shader {
             .validate(&module)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
         let slots = reflect::slots(label, &module, &info)?;
-        Ok(Self { label, features: specialization.to_string(), wgsl, module, info, slots })
+        let features = specialization.to_string();
+        Ok(Self { label, features, specialization: specialization.clone(), wgsl, module, info, slots })
     }
 
     /// The entry point of a stage.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
+use tressfx_core::shader::Language;
 
 use crate::camera::Camera;
 
@@ -27,6 +28,12 @@ pub(crate) enum Command {
     Convert(Convert),
     /// Say how far two pictures differ: FLIP, PSNR, largest step, share of pixels
     Compare(Compare),
+    /// Write the kernels that simulate and render a groom in the language of an engine, with a list of their bindings
+    ///
+    /// Kernels are specialised on the counts of a groom, on its parameters and on what it needs, which is why they are
+    /// written for one groom. Each entry point has a file, LABEL.STAGE.ENDING, and an object in DIR/bindings.json: what
+    /// it was specialised on, its bindings and where they lie in each language, and the structs in them.
+    Shaders(Shaders),
     /// List the graphics adapters of this machine
     Adapters,
 }
@@ -146,6 +153,67 @@ pub(crate) struct Simulate {
     /// Write follow strands too
     #[arg(long)]
     pub(crate) all: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Shaders {
+    /// A file, or `builtin:NAME[:STRANDS[:VERTICES]]`
+    #[arg(default_value = "builtin:long", value_name = "GROOM")]
+    pub(crate) groom: String,
+    /// The languages to write, between commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl", value_name = "LANGUAGE")]
+    pub(crate) emit: Vec<LanguageName>,
+    /// Write only the kernel of this name, such as hair.sim.integrate
+    #[arg(long, value_name = "LABEL")]
+    pub(crate) kernel: Option<String>,
+    /// The folder to write into
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Parameters of simulation and look
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) params: Option<PathBuf>,
+    /// Follow strands of each guide; without it, as `render` has them
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
+    pub(crate) follow: Option<u32>,
+    /// Fragments of a pixel that are sorted exactly
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub(crate) k: u32,
+}
+
+impl Shaders {
+    /// What was asked for.
+    pub(crate) fn languages(&self) -> impl Iterator<Item = Language> {
+        self.emit.iter().map(|name| name.language())
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LanguageName {
+    /// The one source, for WebGPU
+    Wgsl,
+    /// SPIR-V 1.6 for Vulkan 1.3
+    Spirv,
+    /// Shader model 6.0, for Direct3D 12
+    Hlsl,
+    /// Metal Shading Language 2.4; we have nothing that checks it
+    Msl,
+    /// 4.50, for OpenGL 4.5
+    Glsl,
+    /// GLSL ES 3.10, for OpenGL ES 3.1
+    Essl,
+}
+
+impl LanguageName {
+    fn language(self) -> Language {
+        match self {
+            Self::Wgsl => Language::Wgsl,
+            Self::Spirv => Language::Spirv,
+            Self::Hlsl => Language::Hlsl,
+            Self::Msl => Language::Msl,
+            Self::Glsl => Language::Glsl,
+            Self::Essl => Language::Essl,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -16,6 +16,7 @@ mod passes;
 mod picture;
 mod render;
 mod run;
+mod shaders;
 mod simulate;
 mod stats;
 mod studio;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         Command::Convert(args) => convert::run(&args),
         Command::Adapters => backend::adapters(),
         Command::Compare(args) => compare::run(&args),
+        Command::Shaders(args) => shaders::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

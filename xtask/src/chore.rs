@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::driver;
+use crate::{compilers, driver};
 
 /// Built-in grooms that the demo renders, and where the picture goes.
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
@@ -86,7 +86,9 @@ pub(crate) fn test() -> Result<(), String> {
     step(&["fmt", "--all", "--check"])?;
     step(&["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"])?;
     driver::ensure(&tressfx("debug")?)?;
-    step(&["test", "--workspace", "--quiet"])?;
+    compilers::ensure()?;
+    println!("cargo test --workspace");
+    run(cargo(&["test", "--workspace", "--quiet"]).env("TRESSFX_SHADER_COMPILERS", "required"))?;
     println!("cargo doc --workspace --no-deps");
     run(cargo(&["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "--deny warnings"))
 }

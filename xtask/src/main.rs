@@ -1,7 +1,9 @@
 //! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`.
 
 mod chore;
+mod compilers;
 mod driver;
+mod packages;
 
 use std::process::ExitCode;
 
@@ -9,7 +11,8 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
-  test   formatting, clippy, all tests, and the documentation, each without a warning
+  test   formatting, clippy, all tests, and the documentation, each without a warning; installs compilers of
+         other shader languages where there are none
   docs   makes the pictures of README.md and docs/ anew";
 
 fn main() -> ExitCode {

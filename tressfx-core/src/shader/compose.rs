@@ -52,6 +52,16 @@ impl Specialization {
         self
     }
 
+    /// Features, and whether they are on.
+    pub fn features(&self) -> &[(&'static str, bool)] {
+        &self.features
+    }
+
+    /// Constants and their values.
+    pub fn constants(&self) -> &[(&'static str, u32)] {
+        &self.constants
+    }
+
     fn constants_module(&self) -> String {
         self.constants.iter().map(|(name, value)| format!("const {name}: u32 = {value}u;\n")).collect()
     }

@@ -1,6 +1,10 @@
 //! Rust structs that the GPU reads, held against the WGSL that reads them.
 
-use naga::TypeInner;
+use std::collections::HashSet;
+
+use naga::common::wgsl::TypeContext;
+use naga::{Handle, StructMember, Type, TypeInner};
+use serde::Serialize;
 
 use super::Shader;
 
@@ -32,24 +36,74 @@ macro_rules! gpu_struct {
     };
 }
 
+/// A struct in a buffer, as the WGSL lays it out.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StructLayout {
+    /// Its name.
+    pub name: String,
+    /// Its size.
+    pub bytes: u32,
+    /// Its fields, in order.
+    pub fields: Vec<FieldLayout>,
+}
+
+/// A field of a struct.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FieldLayout {
+    /// Its name.
+    pub name: String,
+    /// The type in the WGSL, such as `vec4<f32>`.
+    #[serde(rename = "type")]
+    pub type_name: String,
+    /// Bytes from the beginning of the struct.
+    pub offset: u32,
+}
+
 impl Shader {
+    /// The structs of its buffers, each after those that it holds.
+    pub fn structs(&self) -> Vec<StructLayout> {
+        let mut seen = HashSet::new();
+        for (_, variable) in self.module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()) {
+            self.see(variable.ty, &mut seen);
+        }
+        let types = self.module.types.iter().filter(|(handle, _)| seen.contains(handle));
+        types.filter_map(|(_, ty)| self.layout(ty)).collect()
+    }
+
+    fn see(&self, ty: Handle<Type>, seen: &mut HashSet<Handle<Type>>) {
+        seen.insert(ty);
+        match &self.module.types[ty].inner {
+            TypeInner::Array { base, .. } => self.see(*base, seen),
+            TypeInner::Struct { members, .. } => members.iter().for_each(|member| self.see(member.ty, seen)),
+            _ => {}
+        }
+    }
+
+    fn layout(&self, ty: &Type) -> Option<StructLayout> {
+        let TypeInner::Struct { members, span } = &ty.inner else { return None };
+        let field = |member: &StructMember| FieldLayout {
+            name: member.name.clone().unwrap_or_default(),
+            type_name: self.module.to_ctx().type_to_string(member.ty),
+            offset: member.offset,
+        };
+        let name = ty.name.clone().unwrap_or_default();
+        Some(StructLayout { name, bytes: *span, fields: members.iter().map(field).collect() })
+    }
+
     /// Holds a Rust struct against the WGSL struct of the same name: fields, offsets and size.
     ///
     /// # Errors
     /// What differs, in words.
     pub fn check_layout<T: GpuStruct>(&self) -> Result<(), String> {
-        let found = self.module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(T::NAME));
-        let Some((_, ty)) = found else { return Err(format!("{}: no struct `{}` in the WGSL", self.label, T::NAME)) };
-        let TypeInner::Struct { members, span } = &ty.inner else {
-            return Err(format!("{}: `{}` is not a struct", self.label, T::NAME));
-        };
-        let wgsl: Vec<_> =
-            members.iter().map(|member| (member.name.as_deref().unwrap_or(""), member.offset as usize)).collect();
-        if wgsl != T::FIELDS || *span as usize != size_of::<T>() {
+        let found = self.structs().into_iter().find(|layout| layout.name == T::NAME);
+        let Some(layout) = found else { return Err(format!("{}: no struct `{}` in the WGSL", self.label, T::NAME)) };
+        let wgsl: Vec<_> = layout.fields.iter().map(|field| (field.name.as_str(), field.offset as usize)).collect();
+        if wgsl != T::FIELDS || layout.bytes as usize != size_of::<T>() {
             return Err(format!(
-                "{}: `{}` is {wgsl:?}, {span} bytes in WGSL, and {:?}, {} bytes in Rust",
+                "{}: `{}` is {wgsl:?}, {} bytes in WGSL, and {:?}, {} bytes in Rust",
                 self.label,
                 T::NAME,
+                layout.bytes,
                 T::FIELDS,
                 size_of::<T>()
             ));

@@ -1,5 +1,8 @@
 //! The bindings of a shader, read off the naga module.
 
+use std::fmt;
+
+use naga::common::wgsl::TypeContext;
 use naga::{AddressSpace, GlobalVariable, ImageClass, ShaderStage, StorageAccess, TypeInner};
 
 use crate::error::{Error, Label, Result};
@@ -13,6 +16,8 @@ pub struct ShaderSlot {
     pub binding: u32,
     /// What has to be bound.
     pub kind: SlotKind,
+    /// The type in the WGSL, such as `array<vec4<f32>>`.
+    pub type_name: String,
     /// Which stages see it.
     pub stages: Stages,
     /// Bytes that a buffer must have at least; 0 for textures.
@@ -41,6 +46,18 @@ pub enum SlotKind {
     DepthTexture,
 }
 
+impl fmt::Display for SlotKind {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(match self {
+            Self::Uniform => "uniform",
+            Self::Read => "read",
+            Self::ReadWrite => "read_write",
+            Self::Texture => "texture",
+            Self::DepthTexture => "depth_texture",
+        })
+    }
+}
+
 /// A set of shader stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stages(u8);
@@ -58,7 +75,7 @@ impl Stages {
         self.0 & other.0 != 0
     }
 
-    fn of(stage: ShaderStage) -> Option<Self> {
+    pub(super) fn of(stage: ShaderStage) -> Option<Self> {
         match stage {
             ShaderStage::Compute => Some(Self::COMPUTE),
             ShaderStage::Vertex => Some(Self::VERTEX),
@@ -99,7 +116,8 @@ pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::Mod
             SlotKind::Texture | SlotKind::DepthTexture => 0,
             _ => u64::from(module.types[variable.ty].inner.size(module.to_ctx())),
         };
-        slots.push(ShaderSlot { name: name.clone(), binding: binding.binding, kind, stages, min_bytes });
+        let type_name = module.to_ctx().type_to_string(variable.ty);
+        slots.push(ShaderSlot { name: name.clone(), binding: binding.binding, kind, type_name, stages, min_bytes });
     }
     slots.sort_by_key(|slot| slot.binding);
     if let Some(pair) = slots.windows(2).find(|pair| pair[0].binding == pair[1].binding) {

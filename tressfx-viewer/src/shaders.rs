@@ -1,0 +1,174 @@
+//! `tressfx shaders`: the kernels in the language of an engine, and what they bind.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::Arc;
+
+use anyhow::{Context, Result, bail};
+use glam::Vec3;
+use serde::Serialize;
+use tressfx_core::backend::{Caps, DepthOrder, Format};
+use tressfx_core::naga::ShaderStage;
+use tressfx_core::null::NullBackend;
+use tressfx_core::shader::{Emitted, Extra, Language, Shader, ShaderSlot, Stages, StructLayout};
+use tressfx_core::shape::Capsule;
+use tressfx_render::{HairRenderer, RenderDesc, ScenePass};
+use tressfx_sim::{HairSim, SectionDesc};
+
+use crate::cli;
+use crate::groom::Groom;
+use crate::params::Params;
+
+/// An entry point in `bindings.json`.
+#[derive(Serialize)]
+struct EntryPoint<'a> {
+    label: &'a str,
+    stage: &'static str,
+    /// In the WGSL.
+    entry_point: &'a str,
+    /// Threads of a group; of compute.
+    workgroup_size: Option<[u32; 3]>,
+    features: BTreeMap<&'a str, bool>,
+    constants: BTreeMap<&'a str, u32>,
+    bindings: Vec<Binding<'a>>,
+    structs: Vec<StructLayout>,
+    /// By the name of the language.
+    languages: BTreeMap<&'static str, Written>,
+}
+
+#[derive(Serialize)]
+struct Binding<'a> {
+    name: &'a str,
+    binding: u32,
+    kind: String,
+    #[serde(rename = "type")]
+    type_name: &'a str,
+    min_bytes: u64,
+    /// All stages of the pipeline that see it.
+    stages: Vec<&'static str>,
+    /// In the words of each language.
+    places: BTreeMap<&'static str, String>,
+}
+
+/// A file that was written.
+#[derive(Serialize)]
+struct Written {
+    file: String,
+    entry_point: String,
+    /// What has to be bound beside the bindings: a constant buffer of `u32`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    extra: Option<ExtraBuffer>,
+}
+
+#[derive(Serialize)]
+struct ExtraBuffer {
+    name: &'static str,
+    place: &'static str,
+    holds: Vec<String>,
+}
+
+const STAGES: [(ShaderStage, Stages, &str); 3] = [
+    (ShaderStage::Compute, Stages::COMPUTE, "comp"),
+    (ShaderStage::Vertex, Stages::VERTEX, "vert"),
+    (ShaderStage::Fragment, Stages::FRAGMENT, "frag"),
+];
+
+/// Writes a file for each entry point and language, and `bindings.json`.
+pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
+    let all = shaders(args)?;
+    let named = |shader: &&Arc<Shader>| args.kernel.as_deref().is_none_or(|label| label == shader.label);
+    let chosen: Vec<_> = all.iter().filter(named).collect();
+    if let (true, Some(label)) = (chosen.is_empty(), &args.kernel) {
+        let labels: std::collections::BTreeSet<_> = all.iter().map(|shader| shader.label).collect();
+        let labels = labels.into_iter().collect::<Vec<_>>().join(", ");
+        bail!("no kernel of this groom is named `{label}`; there are {labels}");
+    }
+    fs::create_dir_all(&args.out).with_context(|| args.out.display().to_string())?;
+    let mut entries = Vec::new();
+    for shader in chosen {
+        let name = file_name(shader, &all);
+        for (stage, flag, suffix) in STAGES {
+            if shader.module.entry_points.iter().any(|entry| entry.stage == stage) {
+                let mut entry = EntryPoint::new(shader, stage, flag, suffix)?;
+                for language in args.languages() {
+                    let emitted = shader.emit(stage, language)?;
+                    let written = write(args, format!("{name}.{suffix}.{}", language.ending()), emitted)?;
+                    entry.languages.insert(language.name(), written);
+                }
+                entries.push(entry);
+            }
+        }
+    }
+    let path = args.out.join("bindings.json");
+    fs::write(&path, serde_json::to_string_pretty(&entries)? + "\n").with_context(|| path.display().to_string())?;
+    println!("{} entry points, described in {}", entries.len(), path.display());
+    Ok(())
+}
+
+/// The kernels that simulating and rendering the groom compiles; with capsules, in wind and without.
+fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
+    let groom = Groom::load(std::slice::from_ref(&args.groom), args.follow)?;
+    let params = Params::read(args.params.as_deref(), 1)?;
+    // What a device can hold does not matter where nothing runs.
+    let most = u64::MAX;
+    let caps = Caps { max_storage_binding_bytes: most, max_buffer_bytes: most, ..Caps::webgpu_default() };
+    let mut backend = NullBackend::new(caps);
+    let section = SectionDesc { strands: &groom.sections[0], params: params.sim(0).clone() };
+    // How many there are is read from the buffer.
+    let capsule = Capsule { a: Vec3::ZERO, radius_a: 0.0, b: Vec3::ZERO, radius_b: 0.0 };
+    HairSim::new(&mut backend, &[section], &[capsule])?;
+    HairRenderer::new(&mut backend, &RenderDesc { k: args.k, ..RenderDesc::new([64, 64], Format::Rgba16F) })?;
+    ScenePass::new(&mut backend, Format::Rgba16F, DepthOrder::Standard)?;
+    Ok(backend.shaders)
+}
+
+/// The label, and where several kernels have it, the features that are on.
+fn file_name(shader: &Shader, all: &[Arc<Shader>]) -> String {
+    let mut name = shader.label.to_owned();
+    if all.iter().filter(|other| other.label == shader.label).count() > 1 {
+        for (feature, _) in shader.specialization.features().iter().filter(|(_, on)| *on) {
+            name = format!("{name}.{feature}");
+        }
+    }
+    name
+}
+
+fn write(args: &cli::Shaders, file: String, Emitted { code, entry_point, extra }: Emitted) -> Result<Written> {
+    let path = args.out.join(&file);
+    fs::write(&path, code).with_context(|| path.display().to_string())?;
+    let extra = extra.map(|Extra { name, place, holds }| ExtraBuffer { name, place, holds });
+    Ok(Written { file, entry_point, extra })
+}
+
+impl<'a> EntryPoint<'a> {
+    fn new(shader: &'a Shader, stage: ShaderStage, flag: Stages, suffix: &'static str) -> Result<Self> {
+        let entry = shader.entry_point(stage)?;
+        let slots = shader.slots.iter().filter(|slot| slot.stages.has(flag));
+        Ok(Self {
+            label: shader.label,
+            stage: suffix,
+            entry_point: &entry.name,
+            workgroup_size: (stage == ShaderStage::Compute).then_some(entry.workgroup_size),
+            features: shader.specialization.features().iter().copied().collect(),
+            constants: shader.specialization.constants().iter().copied().collect(),
+            bindings: slots.map(Binding::new).collect(),
+            structs: shader.structs(),
+            languages: BTreeMap::new(),
+        })
+    }
+}
+
+impl<'a> Binding<'a> {
+    fn new(slot: &'a ShaderSlot) -> Self {
+        let stages = STAGES.iter().filter(|(_, flag, _)| slot.stages.has(*flag));
+        Self {
+            name: &slot.name,
+            binding: slot.binding,
+            kind: slot.kind.to_string(),
+            type_name: &slot.type_name,
+            min_bytes: slot.min_bytes,
+            stages: stages.map(|(_, _, suffix)| *suffix).collect(),
+            places: Language::ALL.map(|language| (language.name(), language.place(slot))).into(),
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! `tressfx shaders`: every kernel in every language, and what the compilers of others say about it.
+
+mod compilers;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+use crate::compilers::{Compiler, installed};
+
+const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
+
+/// Without the shapes and without sweeps.
+const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
+
+/// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
+const VARIANTS: [&[&str]; 4] = [
+    &[],
+    &["builtin:fur:40:3", "--follow", "2", "--k", "1", "--params", "bare.toml"],
+    &["pinned.tfx", "--k", "16"],
+    &["pinned.tfx", "--params", "bare.toml"],
+];
+
+fn tressfx(folder: &Path, words: &[&str]) -> Output {
+    let program = env!("CARGO_BIN_EXE_tressfx");
+    Command::new(program).current_dir(folder).arg("shaders").args(words).output().unwrap()
+}
+
+/// A folder for a test, with the files that the variants name.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shaders").join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("bare.toml"), BARE).unwrap();
+    let convert = ["convert", "builtin:wavy:30:8", "pinned.tfx"];
+    let done = Command::new(env!("CARGO_BIN_EXE_tressfx")).current_dir(&folder).args(convert).status().unwrap();
+    assert!(done.success());
+    // The inverse mass of the tip of the first strand: positions of 16 bytes lie behind a header of 160.
+    let mut groom = fs::read(folder.join("pinned.tfx")).unwrap();
+    groom[160 + 16 * 7 + 12..160 + 16 * 8].fill(0);
+    fs::write(folder.join("pinned.tfx"), groom).unwrap();
+    folder
+}
+
+/// Writes the kernels of a variant and reads their descriptions.
+fn emit(folder: &Path, words: &[&str]) -> Vec<Value> {
+    let output = tressfx(folder, &[words, &["--emit", LANGUAGES, "--out", "out"]].concat());
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    let entries = fs::read(folder.join("out/bindings.json")).unwrap();
+    serde_json::from_slice::<Value>(&entries).unwrap().as_array().unwrap().clone()
+}
+
+fn text<'a>(value: &'a Value, key: &str) -> &'a str {
+    value[key].as_str().unwrap_or_else(|| panic!("no text `{key}` in {value}"))
+}
+
+fn file_of(entry: &Value, language: &str) -> String {
+    text(&entry["languages"][language], "file").to_owned()
+}
+
+#[test]
+fn every_kernel_is_written_in_every_language_with_its_bindings() {
+    let folder = folder("written");
+    let (mut labels, mut features) = (BTreeSet::new(), BTreeSet::new());
+    for words in VARIANTS {
+        let entries = emit(&folder, words);
+        let files: BTreeSet<_> = entries.iter().map(|entry| file_of(entry, "wgsl")).collect();
+        assert_eq!(files.len(), entries.len(), "each entry point has a file of its own: {files:?}");
+        for entry in &entries {
+            labels.insert(text(entry, "label").to_owned());
+            features.extend(entry["features"].as_object().unwrap().iter().map(|(name, on)| format!("{name} {on}")));
+            LANGUAGES.split(',').for_each(|language| check_text(&folder, entry, language));
+        }
+    }
+    assert_eq!(labels, labels_of_kernels());
+    let both = |name| [format!("{name} false"), format!("{name} true")];
+    assert_eq!(features, ["global_shape", "pinned_tips", "wind"].into_iter().flat_map(both).collect());
+}
+
+/// Every binding stands in the text, with its name in the line that says where it is.
+fn check_text(folder: &Path, entry: &Value, language: &str) {
+    let file = file_of(entry, language);
+    let code = fs::read(folder.join("out").join(&file)).unwrap();
+    if language == "spirv" {
+        assert_eq!(code[..4], 0x0723_0203_u32.to_ne_bytes(), "{file}");
+        return;
+    }
+    let code = String::from_utf8(code).unwrap().replace("\nvar", " var");
+    assert!(code.contains(&format!(" {}(", text(&entry["languages"][language], "entry_point"))), "{file}");
+    let places = entry["bindings"].as_array().unwrap().iter().map(|binding| (binding, &binding["places"]));
+    for (name, place) in places.map(|(binding, places)| (text(binding, "name"), text(places, language))) {
+        let stands = |line: &str| !line.starts_with("//") && line.contains(place) && line.contains(name);
+        assert!(code.lines().any(stands), "{file}: no line with `{name}` and `{place}`");
+    }
+    if let Some(extra) = entry["languages"][language].get("extra") {
+        let stands = |line: &str| line.contains(text(extra, "name")) && line.contains(text(extra, "place"));
+        assert!(code.lines().any(stands), "{file}: no line with {extra}");
+    }
+}
+
+/// The labels of all kernels there are: each is a WGSL file beside those that are imported.
+fn labels_of_kernels() -> BTreeSet<String> {
+    let mut labels = BTreeSet::new();
+    for group in ["sim", "render"] {
+        let folder = format!("{}/../tressfx-{group}/shaders", env!("CARGO_MANIFEST_DIR"));
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
+            let wgsl = fs::read_to_string(&path).unwrap();
+            if wgsl.contains("@compute") || wgsl.contains("@fragment") {
+                labels.insert(format!("hair.{group}.{}", path.file_stem().unwrap().to_string_lossy()));
+            }
+        }
+    }
+    labels
+}
+
+#[test]
+fn compilers_take_every_kernel() {
+    let folder = folder("compiled");
+    let compilers: Vec<_> = Compiler::ALL.into_iter().filter(|&compiler| installed(compiler)).collect();
+    for words in VARIANTS {
+        for entry in emit(&folder, words) {
+            for &compiler in &compilers {
+                compile(compiler, &folder, &entry).unwrap_or_else(|message| panic!("{words:?}: {message}"));
+            }
+        }
+    }
+}
+
+fn compile(compiler: Compiler, folder: &Path, entry: &Value) -> Result<(), String> {
+    let written = &entry["languages"][compiler.language()];
+    let file = folder.join("out").join(text(written, "file"));
+    compiler.compile(&file, text(entry, "stage"), text(written, "entry_point"))
+}
+
+#[test]
+fn compilers_refuse_a_broken_kernel() {
+    let folder = folder("broken");
+    for compiler in Compiler::ALL.into_iter().filter(|&compiler| installed(compiler)) {
+        let entries = emit(&folder, &["--kernel", "hair.sim.tangents"]);
+        let path = folder.join("out").join(file_of(&entries[0], compiler.language()));
+        let mut code = fs::read(&path).unwrap();
+        match compiler.language() {
+            // Its last instruction, the end of a function, goes.
+            "spirv" => code.truncate(code.len() - 4),
+            _ => code = String::from_utf8(code).unwrap().replace("normalize(", "normalise(").into_bytes(),
+        }
+        fs::write(&path, code).unwrap();
+        let message = compile(compiler, &folder, &entries[0]).expect_err(compiler.language());
+        assert!(message.contains("hair.sim.tangents"), "{message}");
+    }
+}
+
+#[test]
+fn one_kernel_is_chosen_by_its_name() {
+    let folder = folder("chosen");
+    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.length"]);
+    let files: Vec<_> = entries.iter().map(|entry| file_of(entry, "hlsl")).collect();
+    assert_eq!(files, ["hair.sim.length.comp.hlsl", "hair.sim.length.wind.comp.hlsl"]);
+    assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 2 * 6 + 1);
+    let calm = &entries[0];
+    assert_eq!((&calm["constants"]["GUIDES"], &calm["constants"]["VERTICES"]), (&40.into(), &3.into()));
+    assert_eq!(calm["workgroup_size"], serde_json::json!([64, 1, 1]));
+    assert_eq!(calm["bindings"][0]["places"]["hlsl"], "register(b0)");
+    let step = calm["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
+    assert_eq!(step["fields"][1], serde_json::json!({ "name": "head_translation", "type": "vec3<f32>", "offset": 16 }));
+    let output = tressfx(&folder, &["--kernel", "hair.sim.lenght", "--out", "none"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(message.contains("`hair.sim.lenght`") && message.contains("hair.sim.length, "), "{message}");
+    assert!(!folder.join("none").exists());
+}
