@@ -1,0 +1,2 @@
+//! A backend from outside.
+fn main() {}
