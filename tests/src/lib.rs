@@ -1,26 +1,21 @@
-//! The suite that any TressFX backend must pass, and the tests across crates.
+//! The suite that any TressFX backend must pass, and what the tests across crates share.
+//!
+//! An engine's team writes, in `tests/conformance.rs` of its own repository:
+//!
+//! ```ignore
+//! tressfx_conformance::suite!(|| MyBackend::headless());
+//! ```
+//!
+//! which is one `#[test]` for each case of [`suite`].
 
+pub mod faulty;
 pub mod render;
+pub mod show;
 pub mod sim;
+pub mod suite;
 
-use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::Backend;
 use tressfx_core::pass::{PassList, Ticket};
-
-/// A wgpu backend, or `None` where there is no adapter and `TRESSFX_NO_GPU` says that this is known.
-///
-/// # Panics
-/// If there is no adapter and nobody said so: a test must not pass because it did not run.
-pub fn gpu() -> Option<WgpuBackend> {
-    match WgpuBackend::headless() {
-        Ok(backend) => Some(backend),
-        Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {
-            eprintln!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// Runs a list and brings one read-back home.
 ///

@@ -1,7 +1,6 @@
 //! Small grooms, a small screen, and pictures that can be held against their f64 references.
 
 use glam::{DVec4, Vec3};
-use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
 use tressfx_core::id::TextureId;
 use tressfx_core::mesh::Mesh;
@@ -156,10 +155,9 @@ impl Difference {
 }
 
 /// A screen to draw on.
-#[derive(Debug)]
 pub struct Stage {
     /// The GPU.
-    pub backend: WgpuBackend,
+    pub backend: Box<dyn Backend>,
     /// The camera.
     pub view: View,
     /// The light.
@@ -173,9 +171,11 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// A screen of 96 x 64 pixels that looks along -z at the origin from a distance of 3; `None` as [`crate::gpu`].
-    pub fn new(change: impl FnOnce(&mut RenderDesc, &mut View)) -> Option<Self> {
-        let mut backend = crate::gpu()?;
+    /// A screen of 96 x 64 pixels that looks along -z at the origin from a distance of 3, unless `change` says otherwise.
+    ///
+    /// # Panics
+    /// If the backend refuses what it asks for.
+    pub fn new(mut backend: Box<dyn Backend>, change: impl FnOnce(&mut RenderDesc, &mut View)) -> Self {
         let mut view = View {
             eye: Vec3::new(0.0, 0.0, 3.0),
             target: Vec3::ZERO,
@@ -188,11 +188,11 @@ impl Stage {
         let mut desc = RenderDesc::new(view.size, Format::Rgba16F);
         change(&mut desc, &mut view);
         desc.size = view.size;
-        let renderer = HairRenderer::new(&mut backend, &desc).expect("a renderer");
+        let renderer = HairRenderer::new(&mut *backend, &desc).expect("a renderer");
         let mut texture =
             |label, format| backend.create_texture(&TextureDesc { label, size: view.size, format }).expect("a texture");
         let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
-        Some(Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth })
+        Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth }
     }
 
     /// What the shaders are given.
@@ -207,11 +207,11 @@ impl Stage {
 
     /// Uploads a groom with the next run of `list`.
     pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> Section {
-        let buffers = StrandBuffers::new(&mut self.backend, groom.shape).expect("buffers");
+        let buffers = StrandBuffers::new(&mut *self.backend, groom.shape).expect("buffers");
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
-        Section::new(&mut self.backend, list, buffers, groom.info.clone()).expect("a section")
+        Section::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section")
     }
 
     /// Hair over nothing.
@@ -229,10 +229,10 @@ impl Stage {
     /// Hair and meshes.
     pub fn scene(&mut self, meshes: &[(&Mesh, Surface)], grooms: &[&Groom]) -> Picture {
         let mut list = PassList::new();
-        let pass = ScenePass::new(&mut self.backend, Format::Rgba16F, self.view.depth).expect("a scene pass");
+        let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, self.view.depth).expect("a scene pass");
         let made: Vec<_> = meshes
             .iter()
-            .map(|(mesh, _)| SceneMesh::new(&mut self.backend, &mut list, mesh).expect("a mesh"))
+            .map(|(mesh, _)| SceneMesh::new(&mut *self.backend, &mut list, mesh).expect("a mesh"))
             .collect();
         let draws: Vec<_> = made
             .iter()
@@ -252,7 +252,7 @@ impl Stage {
     pub fn depth(&mut self) -> Vec<f32> {
         let mut list = PassList::new();
         let ticket = list.read_texture(self.depth);
-        bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut self.backend, &list, ticket))
+        bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut *self.backend, &list, ticket))
     }
 
     fn over(&mut self, mut list: PassList, grooms: &[&Groom]) -> Picture {
@@ -263,14 +263,14 @@ impl Stage {
             .map(|(section, groom)| SectionDraw { section, material: &groom.material, pose: groom.pose })
             .collect();
         if self.may_grow {
-            self.renderer.reserve(&mut self.backend, &self.view, &draws).expect("a pool");
+            self.renderer.reserve(&mut *self.backend, &self.view, &draws).expect("a pool");
         }
         self.renderer.draw(&mut list, &self.view, &self.lights, &self.targets(), &draws);
         let counters = self.renderer.read_counters(&mut list);
         let picture = list.read_texture(self.color);
-        let bytes = crate::run_and_read(&mut self.backend, &list, picture);
+        let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
         let counters = Counters::from_bytes(&self.backend.read(counters).expect("it has run"));
-        sections.into_iter().for_each(|section| section.destroy(&mut self.backend));
+        sections.into_iter().for_each(|section| section.destroy(&mut *self.backend));
         Picture { size: self.view.size, bytes, counters }
     }
 }

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Quat, Vec3, Vec4};
-use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::{self, AssetFormat, HairAsset};
 use tressfx_core::backend::Backend;
 use tressfx_core::builtin::Builtin;
@@ -13,12 +12,10 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
 use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
 
-use crate::gpu;
-
 /// A simulation and the GPU that it runs on.
 pub struct Rig {
     /// The GPU.
-    pub backend: WgpuBackend,
+    pub backend: Box<dyn Backend>,
     /// The simulation.
     pub sim: HairSim,
     /// What it simulates.
@@ -26,21 +23,15 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// One section; `None` where tests run without a GPU.
-    pub fn new(strands: Strands, params: SimParams, capsules: &[Capsule]) -> Option<Self> {
-        Self::with_sections(vec![(strands, params)], capsules)
-    }
-
-    /// Several sections; `None` where tests run without a GPU.
+    /// A simulation of these sections.
     ///
     /// # Panics
     /// If the simulation cannot be made.
-    pub fn with_sections(sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Option<Self> {
-        let mut backend = gpu()?;
+    pub fn new(mut backend: Box<dyn Backend>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
         let descs: Vec<_> =
             sections.iter().map(|(strands, params)| SectionDesc { strands, params: params.clone() }).collect();
-        let sim = HairSim::new(&mut backend, &descs, capsules).expect("the simulation is made");
-        Some(Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() })
+        let sim = HairSim::new(&mut *backend, &descs, capsules).expect("the simulation is made");
+        Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() }
     }
 
     /// Runs what `record` records.
@@ -117,6 +108,8 @@ pub struct Motion {
     pub wind: Option<Wind>,
     /// Metres that a unit of the file stands for.
     pub metres_per_unit: f32,
+    /// How far into its swings it begins, s.
+    pub start: f64,
 }
 
 impl Motion {
@@ -133,12 +126,12 @@ impl Motion {
     /// A head that is shaken and turned, in a wind.
     pub fn wild(strands: &Strands) -> Self {
         let wind = Some(Wind::new(Vec3::new(2.0, 0.3, -1.0)));
-        Self { shake: 0.04, turn: 0.5, wind, metres_per_unit: strands.metres_per_unit }
+        Self { shake: 0.04, wind, ..Self::turning(strands) }
     }
 
     /// The pose of the head at a time in seconds.
     pub fn head(&self, seconds: f64) -> Pose {
-        let swing = |hertz: f64| (std::f64::consts::TAU * hertz * seconds).sin() as f32;
+        let swing = |hertz: f64| (std::f64::consts::TAU * hertz * (self.start + seconds)).sin() as f32;
         let rotation = if self.turn == 0.0 { Quat::IDENTITY } else { Quat::from_rotation_y(self.turn * swing(1.0)) };
         Pose { rotation, translation: Vec3::X * (self.shake * swing(3.0) / self.metres_per_unit) }
     }

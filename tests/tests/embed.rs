@@ -1,12 +1,15 @@
 //! Inside an engine: its device, its queue, its encoder, its buffers and textures.
 
+mod support;
+
 use std::sync::Arc;
 
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
-use tressfx_conformance::gpu;
 use tressfx_core::backend::{Backend, BufferDesc, BufferUse, ComputeDesc, Record};
 use tressfx_core::pass::{Grid, Load, PassList, RasterPass};
 use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+
+use support::gpu;
 
 const INCREMENT: &str = "
     @group(0) @binding(0) var<storage, read_write> values: array<u32>;

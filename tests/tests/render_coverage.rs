@@ -1,8 +1,12 @@
 //! Coverage is proportional to the true width, and opacity counts once.
 
+mod support;
+
 use glam::{DVec2, Vec3};
 use tressfx_conformance::render::{Groom, Stage};
 use tressfx_render::{Light, Material, reference};
+
+use support::stage;
 
 /// A material that shades to one colour whatever the light.
 fn flat(stage: &mut Stage, material: Material) -> Material {
@@ -33,7 +37,7 @@ fn line(angle: f32, vertices: u32) -> Vec<Vec3> {
 
 #[test]
 fn coverage_integrates_to_width_times_length() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let pixels_per_unit = 1.0 / (stage.view.pixel_angle() * 3.0);
     for width in [0.02, 0.1, 0.4, 1.0, 2.5, 6.0f32] {
         for degrees in [0.0, 17.0, 45.0, 63.0, 90.0f32] {
@@ -52,7 +56,7 @@ fn coverage_integrates_to_width_times_length() {
 
 #[test]
 fn a_thin_strand_has_the_same_opacity_in_every_column() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let pixels_per_unit = 1.0 / (stage.view.pixel_angle() * 3.0);
     let material = flat(&mut stage, opaque(0.05 / pixels_per_unit));
     for degrees in [0.0, 10.0, 30.0, 44.0f32] {
@@ -68,7 +72,7 @@ fn a_thin_strand_has_the_same_opacity_in_every_column() {
 
 #[test]
 fn segments_of_a_straight_strand_share_no_pixel_and_leave_none_out() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let material = flat(&mut stage, opaque(0.02));
     for degrees in [0.0, 31.0, 45.0, 90.0f32] {
         let whole = stage.hair(&[&Groom::new(&[line(degrees.to_radians(), 2)], material)]);
@@ -81,7 +85,7 @@ fn segments_of_a_straight_strand_share_no_pixel_and_leave_none_out() {
 
 #[test]
 fn opacity_counts_once() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let middle = |picture: &tressfx_conformance::render::Picture| picture.pixels()[32 * 96 + 48];
     for opacity in [1.0, 0.5f32] {
         let wide = Material { opacity, tip_opacity: opacity, ..flat(&mut stage, opaque(0.1)) };
@@ -97,7 +101,7 @@ fn opacity_counts_once() {
 
 #[test]
 fn the_tip_has_its_own_width_and_opacity() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 1) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 1) else { return };
     let material = Material { tip_opacity: 0.25, ..flat(&mut stage, opaque(0.1)) };
     let groom = Groom::new(&[line(0.0, 2)], material);
     let pixels = stage.hair(&[&groom]).pixels();

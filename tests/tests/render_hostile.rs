@@ -1,8 +1,12 @@
 //! Strands that no groom should hold harm nothing but themselves.
 
+mod support;
+
 use glam::Vec3;
-use tressfx_conformance::render::{Groom, Stage};
+use tressfx_conformance::render::Groom;
 use tressfx_render::Material;
+
+use support::stage;
 
 fn material() -> Material {
     Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
@@ -16,7 +20,7 @@ fn strands(count: u32) -> Vec<Vec<Vec3>> {
 
 #[test]
 fn positions_that_are_not_finite_leave_out_their_segments_alone() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let whole = Groom::new(&strands(30), material());
     let expected = stage.hair(&[&whole]);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -1e13] {
@@ -38,7 +42,7 @@ fn positions_that_are_not_finite_leave_out_their_segments_alone() {
 
 #[test]
 fn segments_without_length_draw_nothing_and_hide_nothing() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let strands = strands(30);
     let expected = stage.hair(&[&Groom::new(&strands, material())]);
     let point = |strand: &Vec<Vec3>| vec![strand[3]; 8];
@@ -52,7 +56,7 @@ fn segments_without_length_draw_nothing_and_hide_nothing() {
 
 #[test]
 fn tangents_that_are_not_finite_do_not_spoil_their_neighbours() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 1) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 1) else { return };
     let mut groom = Groom::new(&strands(30), material());
     groom.tangents[3 * 30 + 4] = [f32::NAN; 4];
     let picture = stage.hair(&[&groom]);
@@ -62,7 +66,7 @@ fn tangents_that_are_not_finite_do_not_spoil_their_neighbours() {
 
 #[test]
 fn no_strand_and_one_strand() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let none = stage.hair(&[&Groom::new(&[], material())]);
     assert_eq!(none.counters, tressfx_render::Counters::default());
     assert!(none.bytes.iter().all(|&byte| byte == 0));
@@ -74,7 +78,7 @@ fn no_strand_and_one_strand() {
 
 #[test]
 fn strands_far_outside_the_picture_cost_nothing_and_long_ones_are_cut() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let away: Vec<_> = strands(30).iter().map(|s| s.iter().map(|&p| p + 100.0 * Vec3::X).collect()).collect();
     assert_eq!(stage.hair(&[&Groom::new(&away, material())]).counters.fragments, 0);
     let long = Groom::new(&[vec![Vec3::new(-1e6, 0.01, 0.0), Vec3::new(1e6, 0.01, 0.0)]], material());

@@ -1,9 +1,13 @@
 //! Pictures of hair against the picture in f64 with every fragment kept and sorted.
 
+mod support;
+
 use glam::DVec4;
 use tressfx_conformance::render::{Difference, Groom, Stage};
 use tressfx_core::view::Pose;
 use tressfx_render::{Material, reference};
+
+use support::stage;
 
 /// Hair of about a third of a pixel on the test's screen, half of which is opaque.
 fn material() -> Material {
@@ -17,7 +21,7 @@ fn nothing(stage: &Stage) -> impl Fn([u32; 2]) -> f32 + use<> {
 
 #[test]
 fn few_strands_are_as_in_f64() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let groom = Groom::wavy(60, 12, 1, material());
     let picture = stage.hair(&[&groom]);
     let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
@@ -29,7 +33,7 @@ fn few_strands_are_as_in_f64() {
 
 #[test]
 fn fragments_and_pixels_are_counted_as_in_f64() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let groom = Groom::wavy(300, 16, 2, material());
     let counters = stage.hair(&[&groom]).counters;
     let (frame, section) = (stage.frame(), groom.reference());
@@ -53,7 +57,7 @@ fn fragments_and_pixels_are_counted_as_in_f64() {
 
 #[test]
 fn what_lies_behind_the_sorted_ones_has_its_true_opacity() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let groom = Groom::wavy(1500, 16, 3, material());
     let picture = stage.hair(&[&groom]);
     let (frame, section) = (stage.frame(), groom.reference());
@@ -73,7 +77,7 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
     let groom = Groom::wavy(1500, 16, 4, Material { variation: 1.0, ..material() });
     let mut psnr = Vec::new();
     for k in [1, 4, 8, 16] {
-        let Some(mut stage) = Stage::new(|desc, _| desc.k = k) else { return };
+        let Some(mut stage) = stage(|desc, _| desc.k = k) else { return };
         let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
         psnr.push(stage.hair(&[&groom]).difference(&exact).psnr);
     }
@@ -84,7 +88,7 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
 
 #[test]
 fn the_supersampled_truth_is_near() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let groom = Groom::wavy(200, 16, 5, Material { fibre_radius: Some(0.003), ..material() });
     let truth = reference::supersampled(&stage.frame(), &[groom.reference()], 8);
     let difference = stage.hair(&[&groom]).difference(&truth);
@@ -94,7 +98,7 @@ fn the_supersampled_truth_is_near() {
 
 #[test]
 fn twice_the_same_picture_to_the_bit() {
-    let Some(mut stage) = Stage::new(|_, view| view.size = [320, 200]) else { return };
+    let Some(mut stage) = stage(|_, view| view.size = [320, 200]) else { return };
     let groom = Groom::wavy(6000, 16, 6, material());
     let first = stage.hair(&[&groom]);
     assert!(first.counters.fragments > 1_000_000, "many threads race: {:?}", first.counters);
@@ -107,7 +111,7 @@ fn twice_the_same_picture_to_the_bit() {
 
 #[test]
 fn sections_are_sorted_against_each_other() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let blue = Material { base_color: [0.05, 0.1, 0.8], tip_color: [0.05, 0.1, 0.8], ..material() };
     let (one, other) = (Groom::wavy(60, 12, 7, material()), Groom::wavy(40, 20, 8, blue));
     let picture = stage.hair(&[&one, &other]);
@@ -121,7 +125,7 @@ fn sections_are_sorted_against_each_other() {
 
 #[test]
 fn a_pose_moves_the_hair_with_its_light() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let rotation = glam::Quat::from_rotation_y(0.8) * glam::Quat::from_rotation_x(0.3);
     let pose = Pose { rotation, translation: glam::Vec3::new(0.1, -0.1, 0.2) };
     let groom = Groom { pose, ..Groom::wavy(60, 12, 9, material()) };

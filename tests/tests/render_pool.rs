@@ -1,7 +1,9 @@
 //! The pool of fragments: what it needs, what happens when it is too small, and what costs nothing.
 
+mod support;
+
 use glam::Vec3;
-use tressfx_conformance::render::{Groom, Stage};
+use tressfx_conformance::render::Groom;
 use tressfx_core::backend::{Caps, DepthOrder, Format, Need};
 use tressfx_core::error::Error;
 use tressfx_core::null::NullBackend;
@@ -10,6 +12,8 @@ use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, Targets};
 
+use support::stage;
+
 fn material() -> Material {
     Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
 }
@@ -17,10 +21,10 @@ fn material() -> Material {
 #[test]
 fn a_full_pool_drops_exactly_what_it_has_no_room_for() {
     let groom = Groom::wavy(400, 16, 1, material());
-    let Some(mut roomy) = Stage::new(|_, _| ()) else { return };
+    let Some(mut roomy) = stage(|_, _| ()) else { return };
     let all = roomy.hair(&[&groom]);
     for capacity in [1, 1000, 6000] {
-        let Some(mut stage) = Stage::new(|desc, _| desc.max_node_bytes = 16 * capacity) else { return };
+        let Some(mut stage) = stage(|desc, _| desc.max_node_bytes = 16 * capacity) else { return };
         let picture = stage.hair(&[&groom]);
         assert_eq!(u64::from(stage.renderer.capacity()), capacity);
         assert_eq!(picture.counters.fragments, all.counters.fragments, "what is wanted is counted all the same");
@@ -39,10 +43,10 @@ fn a_full_pool_drops_exactly_what_it_has_no_room_for() {
 fn no_pixel_loses_its_list_when_the_pool_overflows() {
     // First a section that fits, then one over the same pixels that does not: the first must stay as it was.
     let (first, second) = (Groom::wavy(60, 12, 2, material()), Groom::wavy(400, 16, 3, material()));
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
-    let alone = stage.hair(&[&first]);
+    let Some(mut roomy) = stage(|_, _| ()) else { return };
+    let alone = roomy.hair(&[&first]);
     let fits = u64::from(alone.counters.fragments);
-    let Some(mut tight) = Stage::new(|desc, _| desc.max_node_bytes = 16 * fits) else { return };
+    let Some(mut tight) = stage(|desc, _| desc.max_node_bytes = 16 * fits) else { return };
     let both = tight.hair(&[&first, &second]);
     assert!(both.counters.dropped > 10_000, "{:?}", both.counters);
     assert!(both.bytes == alone.bytes, "the first section is there to the bit");
@@ -50,32 +54,32 @@ fn no_pixel_loses_its_list_when_the_pool_overflows() {
 
 #[test]
 fn the_pool_is_predicted_and_then_measured() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut roomy) = stage(|_, _| ()) else { return };
     let groom = Groom::wavy(3000, 16, 4, material());
-    let picture = stage.hair(&[&groom]);
-    let (needed, capacity) = (f64::from(picture.counters.fragments), f64::from(stage.renderer.capacity()));
+    let picture = roomy.hair(&[&groom]);
+    let (needed, capacity) = (f64::from(picture.counters.fragments), f64::from(roomy.renderer.capacity()));
     eprintln!("{needed} fragments, room for {capacity}");
     assert_eq!(picture.counters.dropped, 0);
     assert!(capacity < 1.5 * needed, "the prediction is near: {capacity} for {needed}");
 
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     stage.may_grow = false;
     let dropping = stage.hair(&[&groom]);
     assert!(dropping.counters.dropped > 0);
-    stage.renderer.observe(&mut stage.backend, &dropping.counters).unwrap();
+    stage.renderer.observe(&mut *stage.backend, &dropping.counters).unwrap();
     let complete = stage.hair(&[&groom]);
     assert_eq!(complete.counters.dropped, 0, "one frame is enough to know");
     assert!(complete.bytes == picture.bytes);
     let grown = stage.renderer.capacity();
-    stage.renderer.observe(&mut stage.backend, &complete.counters).unwrap();
+    stage.renderer.observe(&mut *stage.backend, &complete.counters).unwrap();
     assert_eq!(stage.renderer.capacity(), grown, "enough is enough");
 }
 
 #[test]
 fn the_caller_and_the_device_limit_the_pool() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.max_node_bytes = 16 * 7000) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.max_node_bytes = 16 * 7000) else { return };
     let huge = tressfx_render::Counters { fragments: u32::MAX, ..Default::default() };
-    stage.renderer.observe(&mut stage.backend, &huge).unwrap();
+    stage.renderer.observe(&mut *stage.backend, &huge).unwrap();
     assert_eq!(stage.renderer.capacity(), 7000);
     let mut backend = NullBackend::default();
     let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
@@ -98,12 +102,12 @@ fn a_screen_beyond_the_device_is_refused_with_the_need() {
 #[test]
 fn a_new_size_draws_as_a_new_renderer() {
     let groom = Groom::wavy(200, 16, 5, material());
-    let Some(mut fresh) = Stage::new(|_, _| ()) else { return };
+    let Some(mut fresh) = stage(|_, _| ()) else { return };
     let expected = fresh.hair(&[&groom]);
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let before = stage.backend_memory();
-    stage.renderer.resize(&mut stage.backend, [300, 17]).unwrap();
-    stage.renderer.resize(&mut stage.backend, [96, 64]).unwrap();
+    stage.renderer.resize(&mut *stage.backend, [300, 17]).unwrap();
+    stage.renderer.resize(&mut *stage.backend, [96, 64]).unwrap();
     assert_eq!(stage.backend_memory(), before, "nothing is left behind");
     assert!(stage.hair(&[&groom]).bytes == expected.bytes);
 }

@@ -1,10 +1,14 @@
 //! Hair among opaque things, in front of the eye and behind it.
 
+mod support;
+
 use glam::{DVec4, Vec3};
-use tressfx_conformance::render::{Difference, Groom, Stage};
+use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::mesh::Mesh;
 use tressfx_render::{Material, Surface, reference};
+
+use support::stage;
 
 fn material() -> Material {
     Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
@@ -23,7 +27,7 @@ fn wall(left: f32, z: f32) -> Mesh {
 #[test]
 fn what_is_in_front_hides_hair_and_what_is_behind_does_not() {
     let groom = Groom::wavy(300, 16, 1, material());
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let free = stage.scene(&[], &[&groom]);
     let behind = stage.scene(&[(&wall(-5.0, 1.5), Surface::default())], &[&groom]);
     assert_eq!(behind.counters.fragments, 0, "all of it is behind the wall");
@@ -41,7 +45,7 @@ fn what_is_in_front_hides_hair_and_what_is_behind_does_not() {
 fn depth_is_tested_as_in_f64() {
     let groom = Groom::wavy(300, 16, 2, material());
     for order in [DepthOrder::Standard, DepthOrder::Reverse] {
-        let Some(mut stage) = Stage::new(|desc, view| (desc.k, view.depth) = (16, order)) else { return };
+        let Some(mut stage) = stage(|desc, view| (desc.k, view.depth) = (16, order)) else { return };
         let mesh = wall(0.0, 0.1);
         let picture = stage.scene(&[(&mesh, Surface::default())], &[&groom]);
         let depth = stage.depth();
@@ -61,7 +65,7 @@ fn both_orders_of_depth_give_the_same_picture() {
     let groom = Groom::wavy(300, 16, 3, material());
     let mut pictures = Vec::new();
     for order in [DepthOrder::Standard, DepthOrder::Reverse] {
-        let Some(mut stage) = Stage::new(|_, view| view.depth = order) else { return };
+        let Some(mut stage) = stage(|_, view| view.depth = order) else { return };
         pictures.push((stage.hair(&[&groom]), stage.scene(&[(&wall(0.0, 0.1), Surface::default())], &[&groom])));
     }
     let [(hair, scene), (hair_reverse, scene_reverse)] = &pictures[..] else { unreachable!() };
@@ -74,7 +78,7 @@ fn both_orders_of_depth_give_the_same_picture() {
 
 #[test]
 fn the_scene_is_lit_and_the_backdrop_is_behind_it() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let backdrop = stage.scene(&[], &[]).pixels();
     assert!(backdrop.iter().all(|pixel| pixel.w == 1.0 && pixel.min_element() > 0.01), "every pixel is covered");
     let ball = tressfx_core::shape::Ellipsoid { center: Vec3::ZERO, radii: Vec3::splat(0.5) };
@@ -87,7 +91,7 @@ fn the_scene_is_lit_and_the_backdrop_is_behind_it() {
 
 #[test]
 fn a_strand_that_passes_behind_the_eye_is_cut_at_the_near_plane() {
-    let Some(mut stage) = Stage::new(|desc, _| desc.k = 16) else { return };
+    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
     let strand = |x: f32, y: f32| vec![Vec3::new(x, y, -2.0), Vec3::new(0.4 * x, 0.5 * y, 2.0), Vec3::new(-x, y, 6.0)];
     let strands: Vec<_> = (0..40).map(|i| strand(0.5 - 0.025 * i as f32, 0.3 - 0.013 * i as f32)).collect();
     let groom = Groom::new(&strands, Material { fibre_radius: Some(0.002), ..material() });

@@ -1,11 +1,15 @@
 //! Colours of strand vertices against f64.
 
+mod support;
+
 use glam::{DVec4, Quat, Vec3};
 use tressfx_conformance::render::{Groom, Stage};
 use tressfx_conformance::run_and_read;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
 use tressfx_render::{Highlight, Light, LightPlace, Material, SectionDraw, reference};
+
+use support::stage;
 
 /// Colours as the kernel leaves them, in the order of the buffers.
 fn shaded(stage: &mut Stage, groom: &Groom) -> Vec<DVec4> {
@@ -14,7 +18,7 @@ fn shaded(stage: &mut Stage, groom: &Groom) -> Vec<DVec4> {
     let draw = SectionDraw { section: &section, material: &groom.material, pose: groom.pose };
     stage.renderer.draw(&mut list, &stage.view, &stage.lights, &stage.targets(), &[draw]);
     let ticket = list.read_buffer(section.colors(), 0, 8 * groom.positions.len() as u64);
-    let bytes = run_and_read(&mut stage.backend, &list, ticket);
+    let bytes = run_and_read(&mut *stage.backend, &list, ticket);
     let channel = |i: usize| half::f16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]).to_f64();
     (0..groom.positions.len()).map(|i| DVec4::from_array([0, 1, 2, 3].map(|c| channel(4 * i + c)))).collect()
 }
@@ -36,7 +40,7 @@ fn error(stage: &mut Stage, groom: &Groom) -> f64 {
 
 #[test]
 fn every_vertex_is_as_in_f64() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     let place = LightPlace::Point { position: Vec3::new(0.4, 0.3, 0.8), reach: 0.7 };
     stage.lights.lights.push(Light { place, color: Vec3::new(2.0, 1.0, 0.5) });
     let sharp = Highlight { strength: 1.0, exponent: 200.0 };
@@ -53,7 +57,7 @@ fn every_vertex_is_as_in_f64() {
 
 #[test]
 fn a_fibre_along_the_light_or_the_view_is_finite() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     stage.lights.lights = vec![Light::directional(Vec3::Z, Vec3::ONE), Light::directional(Vec3::Y, Vec3::ONE)];
     // Towards the light, towards the eye, and both at a length that is not quite 1 in f32.
     let directions = [Vec3::Y, Vec3::Z, Vec3::new(0.0, 0.6, 0.8), Vec3::splat(1.0)];
@@ -67,7 +71,7 @@ fn a_fibre_along_the_light_or_the_view_is_finite() {
 
 #[test]
 fn more_light_than_a_half_float_holds_is_clamped() {
-    let Some(mut stage) = Stage::new(|_, _| ()) else { return };
+    let Some(mut stage) = stage(|_, _| ()) else { return };
     stage.lights.sky = Vec3::splat(1e9);
     stage.lights.ground = Vec3::splat(1e9);
     let groom = Groom::wavy(20, 8, 2, Material::default());

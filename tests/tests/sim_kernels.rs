@@ -1,5 +1,7 @@
 //! Each kernel, applied once, against its f64 reference: on random strands of many counts and on real grooms.
 
+mod support;
+
 use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_conformance::sim::{Motion, REAL, Rig, random_strands, real, strand_errors, wide, worst};
 use tressfx_core::shape::Capsule;
@@ -8,6 +10,8 @@ use tressfx_core::view::Pose;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{Step, Units};
 use tressfx_sim::{SimParams, Stage, SubStep, Wind};
+
+use support::rig;
 
 /// Of the strand's length. In a groom of many strands one in a hundred may miss it: where a vertex has overtaken its parent, the
 /// direction in which it is placed hangs on the last bits of both.
@@ -89,7 +93,7 @@ fn expected(stage: Stage, strands: &Strands, step: &Step, capsules: &[Capsule], 
 fn check(name: &str, strands: Strands) {
     let capsules = capsules(&strands);
     let (step, motion) = (step(&strands), Motion::wild(&strands));
-    let Some(mut rig) = Rig::new(strands, params(), &capsules) else { return };
+    let Some(mut rig) = rig(strands, params(), &capsules) else { return };
     rig.play(&motion, 0.2, 60);
     let mut touched = false;
     for stage in Stage::SUB_STEP {
@@ -185,7 +189,7 @@ fn kernels_match_their_references_on_real_grooms() {
 #[test]
 fn inverse_masses_stay_what_they_are() {
     let strands = random_strands(65, 9, 2, 1);
-    let Some(mut rig) = Rig::new(strands, params(), &[]) else { return };
+    let Some(mut rig) = rig(strands, params(), &[]) else { return };
     let motion = Motion::wild(&rig.strands[0]);
     rig.play(&motion, 0.1, 60);
     let positions = rig.positions(0);

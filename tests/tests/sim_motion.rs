@@ -1,12 +1,14 @@
 //! Whole simulations: against f64, against themselves, at several frame rates, and what their lengths are.
 
-use tressfx_conformance::sim::{
-    Motion, REAL, Rig, builtin, lengths, random_strands, real, strand_errors, strands_of, wide,
-};
+mod support;
+
+use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
 use tressfx_core::builtin::Builtin;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_sim::{ClockParams, SectionDesc, SimParams, metrics, reference};
+
+use support::rig;
 
 /// Where the tips are, as the head sees them.
 fn tips(strands: &Strands, positions: &[glam::Vec4]) -> Vec<glam::Vec3> {
@@ -31,7 +33,7 @@ fn tip_distances(strands: &Strands, one: &[glam::Vec3], other: &[glam::Vec3]) ->
 fn against_reference(name: &str, strands: Strands, capsules: &[Capsule]) {
     let motion = Motion::turning(&strands);
     let params = SimParams::default();
-    let Some(mut rig) = Rig::new(strands.clone(), params.clone(), capsules) else { return };
+    let Some(mut rig) = rig(strands.clone(), params.clone(), capsules) else { return };
     let mut reference = reference::Simulation::new(&[SectionDesc { strands: &strands, params }], capsules).unwrap();
     rig.play(&motion, 0.5, 60);
     reference.step(&motion.input(0.0, 0.0)).unwrap();
@@ -68,7 +70,7 @@ fn sixty_steps_match_the_reference_on_real_grooms() {
 fn the_same_run_twice_is_equal_to_the_bit() {
     let run = || {
         let groom: Builtin = "wavy:300".parse().unwrap();
-        let mut rig = Rig::new(strands_of(groom.asset(), 2), SimParams::default(), &groom.capsules())?;
+        let mut rig = rig(strands_of(groom.asset(), 2), SimParams::default(), &groom.capsules())?;
         let motion = Motion::wild(&rig.strands[0]);
         rig.play(&motion, 0.5, 60);
         Some((rig.positions(0), rig.previous(0), rig.tangents(0)))
@@ -78,46 +80,47 @@ fn the_same_run_twice_is_equal_to_the_bit() {
 }
 
 /// Tips after 2 s at a frame rate.
-fn tips_at(strands: &Strands, motion: &Motion, fps: u32, capsules: &[Capsule]) -> Option<Vec<glam::Vec3>> {
-    let mut rig = Rig::new(strands.clone(), SimParams::default(), capsules)?;
+fn tips_at(strands: &Strands, motion: &Motion, fps: u32) -> Option<Vec<glam::Vec3>> {
+    let mut rig = rig(strands.clone(), SimParams::default(), &[])?;
     rig.play(motion, 2.0, fps);
     assert!((rig.sim.time() - 2.0).abs() < 1e-9, "{fps} fps simulate {} s", rig.sim.time());
     let positions = rig.positions(0);
     Some(tips(strands, &positions))
 }
 
-fn frame_rates_agree(name: &str, strands: &Strands, capsules: &[Capsule]) {
-    let motion = Motion::wild(strands);
-    let Some(at_60) = tips_at(strands, &motion, 60, capsules) else { return };
-    for fps in [30, 144] {
-        let distances = tip_distances(strands, &at_60, &tips_at(strands, &motion, fps, capsules).unwrap());
+/// 30, 60 and 144 frames a second against 120, where the head is known at every sub-step. The motion starts where it neither
+/// has its highest speed nor its highest acceleration: at the other end of so many periods either would hide errors.
+fn frame_rates_agree(name: &str, strands: &Strands, share: usize, allowed: f64) {
+    let motion = Motion { start: 1.0 / 24.0, ..Motion::wild(strands) };
+    let Some(exact) = tips_at(strands, &motion, 120) else { return };
+    for fps in [30, 60, 144] {
+        let distances = tip_distances(strands, &exact, &tips_at(strands, &motion, fps).unwrap());
         let at = |share: usize| distances[(distances.len() - 1) * share / 100];
         let (median, most, last) = (at(50), at(99), at(100));
-        println!(
-            "{name}: {fps} against 60 fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand"
-        );
-        // One in a hundred may buckle to another side.
-        assert!(most < 0.02, "{name} at {fps} fps: {most}");
+        println!("{name}: {fps} fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand");
+        assert!(at(share) < allowed, "{name} at {fps} fps: {}", at(share));
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_are() {
     for name in ["straight", "wavy", "curly", "long", "fur"] {
-        frame_rates_agree(name, &builtin(name, 200), &[]);
+        frame_rates_agree(name, &builtin(name, 200), 100, 0.02);
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_of_real_grooms_are() {
     for path in REAL {
-        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, &[]));
+        // Of the mohawk some strands are shorter than what the head moves in a sub-step, and some are unstable.
+        let (share, allowed) = if path == REAL[0] { (99, 0.03) } else { (100, 0.02) };
+        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share, allowed));
     }
 }
 
 /// A groom under gravity, at rest and then shaken: its lengths.
 fn lengths_hold(name: &str, strands: Strands, capsules: &[Capsule]) {
-    let Some(mut rig) = Rig::new(strands, SimParams::default(), capsules) else { return };
+    let Some(mut rig) = rig(strands, SimParams::default(), capsules) else { return };
     for motion in [Motion::still(&rig.strands[0]), Motion::wild(&rig.strands[0])] {
         rig.play(&motion, 1.0, 60);
         let positions = rig.positions(0);
@@ -151,7 +154,7 @@ fn lengths_hold_under_gravity_on_real_grooms() {
 fn a_groom_comes_to_rest_and_keeps_its_style() {
     for (name, droop) in [("straight", 0.2), ("wavy", 0.2), ("curly", 0.4), ("long", 0.2), ("fur", 0.3)] {
         let groom = Builtin { strands: 200, ..name.parse().unwrap() };
-        let Some(mut rig) = Rig::new(strands_of(groom.asset(), 0), SimParams::default(), &groom.capsules()) else {
+        let Some(mut rig) = rig(strands_of(groom.asset(), 0), SimParams::default(), &groom.capsules()) else {
             return;
         };
         let motion = Motion::still(&rig.strands[0]);
@@ -174,7 +177,7 @@ fn the_sub_step_changes_little() {
     let strands = builtin("long", 200);
     let motion = Motion { wind: None, ..Motion::wild(&strands) };
     let run = |rate: f64| {
-        let mut rig = Rig::new(strands.clone(), SimParams::default(), &[])?;
+        let mut rig = rig(strands.clone(), SimParams::default(), &[])?;
         let clock = ClockParams { sub_step: 1.0 / rate, ..ClockParams::default() };
         rig.sim.set_clock_params(clock).unwrap();
         rig.play(&motion, 1.0, 60);

@@ -1,7 +1,9 @@
 //! What is left out changes nothing, and what is thrown at the simulation does not break it.
 
+mod support;
+
 use glam::{Quat, Vec3, Vec4, Vec4Swizzles};
-use tressfx_conformance::sim::{Motion, REAL, Rig, builtin, random_strands, real};
+use tressfx_conformance::sim::{Motion, REAL, builtin, random_strands, real};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::shape::Capsule;
@@ -10,13 +12,15 @@ use tressfx_core::view::Pose;
 use tressfx_sim::step::{Step, Units};
 use tressfx_sim::{Clock, ClockParams, HairSim, SectionDesc, SimError, SimParams, Stage, StepInput, Wind, metrics};
 
+use support::{rig, rig_of_sections};
+
 fn strands() -> Strands {
     random_strands(65, 12, 1, 11)
 }
 
 /// The state after half a second of a motion.
 fn state(params: SimParams, capsules: &[Capsule], motion: &Motion) -> Option<(Vec<Vec4>, Vec<Vec4>)> {
-    let mut rig = Rig::new(strands(), params, capsules)?;
+    let mut rig = rig(strands(), params, capsules)?;
     rig.play(motion, 0.5, 60);
     Some((rig.positions(0), rig.previous(0)))
 }
@@ -69,7 +73,7 @@ fn no_wind_is_a_wind_of_no_speed() {
 #[test]
 fn guides_do_not_care_for_their_follow_strands() {
     let guides = |follows| {
-        let mut rig = Rig::new(random_strands(65, 12, follows, 11), SimParams::default(), &[])?;
+        let mut rig = rig(random_strands(65, 12, follows, 11), SimParams::default(), &[])?;
         let motion = Motion::wild(&rig.strands[0]);
         rig.play(&motion, 0.3, 60);
         Some(rig.positions(0)[..65 * 12].to_vec())
@@ -88,7 +92,7 @@ fn a_head_that_has_not_moved_gives_no_shock() {
         [Stage::Integrate, Stage::LocalShape, Stage::Length, Stage::Follow, Stage::Tangents].map(Stage::label).into();
     assert_eq!(stages, expected);
     // The pass by hand, in every sub-step.
-    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands(), SimParams::default(), &[]) else { return };
     rig.frame(&motion.input(0.0, 0.0));
     let mut clock = Clock::new(ClockParams::default(), rig.strands[0].bounds).unwrap();
     clock.advance(0.0, Pose::IDENTITY);
@@ -114,11 +118,11 @@ fn sections_of_different_shapes_do_not_disturb_each_other() {
         let stiff = SimParams { global_stiffness: 0.6, ..SimParams::default() };
         vec![(random_strands(65, 12, 1, 11), SimParams::default()), (random_strands(40, 31, 2, 12), stiff)]
     };
-    let Some(mut both) = Rig::with_sections(sections(), &[]) else { return };
+    let Some(mut both) = rig_of_sections(sections(), &[]) else { return };
     let motion = Motion::wild(&both.strands[0]);
     both.play(&motion, 0.3, 60);
     for (index, (strands, params)) in sections().into_iter().enumerate() {
-        let mut alone = Rig::new(strands, params, &[]).unwrap();
+        let mut alone = rig(strands, params, &[]).unwrap();
         alone.play(&motion, 0.3, 60);
         assert_eq!(alone.positions(0), both.positions(index), "section {index}");
     }
@@ -129,7 +133,7 @@ fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::Y * 0.02, radius_a: 0.098, radius_b: 0.09 };
     let post = Capsule { a: Vec3::new(0.2, -0.5, 0.0), b: Vec3::new(0.2, 0.5, 0.0), radius_a: 0.05, radius_b: 0.02 };
     let soft = SimParams { global_stiffness: 0.02, local_stiffness: 0.5, ..SimParams::default() };
-    let Some(mut rig) = Rig::new(random_strands(200, 24, 0, 4), soft, &[ball, post]) else { return };
+    let Some(mut rig) = rig(random_strands(200, 24, 0, 4), soft, &[ball, post]) else { return };
     let motion = Motion::wild(&rig.strands[0]);
     rig.play(&motion, 1.0, 60);
     let (positions, to_head) = (rig.positions(0), motion.head(1.0).inverse());
@@ -150,7 +154,7 @@ fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
 fn strands_that_are_pinned_at_both_ends_hang_between_them() {
     let mut strands = random_strands(64, 12, 0, 5);
     strands.rest.chunks_mut(12).for_each(|strand| strand[11].w = 0.0);
-    let Some(mut rig) = Rig::new(strands, SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands, SimParams::default(), &[]) else { return };
     let motion = Motion::wild(&rig.strands[0]);
     rig.play(&motion, 1.0, 60);
     let (positions, head) = (rig.positions(0), motion.head(1.0));
@@ -170,7 +174,7 @@ fn friction_drags_along_what_lies_on_a_turning_head() {
     // How far, in all, vertices that touch the ball turn with it.
     let dragged = |friction| {
         let limp = SimParams { shock: 0.0, global_stiffness: 0.0, local_stiffness: 0.0, ..SimParams::default() };
-        let mut rig = Rig::new(random_strands(100, 16, 0, 8), SimParams { friction, ..limp }, &[ball])?;
+        let mut rig = rig(random_strands(100, 16, 0, 8), SimParams { friction, ..limp }, &[ball])?;
         let motion = Motion::still(&rig.strands[0]);
         rig.play(&motion, 1.0, 60);
         let before = rig.positions(0);
@@ -189,7 +193,7 @@ fn friction_drags_along_what_lies_on_a_turning_head() {
 
 #[test]
 fn a_non_finite_vertex_resets_its_strand_and_is_counted() {
-    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands(), SimParams::default(), &[]) else { return };
     let motion = Motion::wild(&rig.strands[0]);
     rig.play(&motion, 0.2, 60);
     let (buffers, strand_count) = (rig.sim.buffers()[0], 130);
@@ -212,7 +216,7 @@ fn a_non_finite_vertex_resets_its_strand_and_is_counted() {
 
 #[test]
 fn a_teleport_resets_and_a_fast_head_does_not() {
-    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands(), SimParams::default(), &[]) else { return };
     let at = |x: f32| Pose { translation: Vec3::X * x, ..Pose::IDENTITY };
     let report = rig.frame(&StepInput::new(0.0, at(0.0)));
     assert!(report.reset && !report.teleported);
@@ -251,7 +255,7 @@ fn stress_leaves_strands_finite_and_their_lengths_right() {
         SimParams { length_iterations: 16, local_iterations: 16, global_range: 0.1, ..SimParams::default() },
     ];
     for params in extremes {
-        let Some(mut rig) = Rig::new(strands(), params.clone(), &[]) else { return };
+        let Some(mut rig) = rig(strands(), params.clone(), &[]) else { return };
         let wind = Some(Wind::new(Vec3::new(1e6, 0.0, 1.0)));
         for frame in 0..60 {
             let dt = [1.0 / 60.0, 0.0, 10.0, -1.0, 1e-9][frame % 5];
@@ -293,19 +297,19 @@ fn what_is_not_finite_or_out_of_range_is_refused_and_nothing_is_recorded() {
 
 #[test]
 fn parameters_can_change_while_it_runs() {
-    let Some(mut rig) = Rig::new(strands(), SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands(), SimParams::default(), &[]) else { return };
     let motion = Motion::still(&rig.strands[0]);
     rig.play(&motion, 0.5, 60);
     let hanging = rig.positions(0)[11].y;
     let up = SimParams { gravity: Vec3::Y * 9.81, local_iterations: 3, ..SimParams::default() };
-    rig.sim.set_params(&mut rig.backend, 0, up.clone()).unwrap();
+    rig.sim.set_params(&mut *rig.backend, 0, up.clone()).unwrap();
     assert_eq!(rig.sim.params(0), &up);
     rig.play(&motion, 1.0, 60);
     assert!(rig.positions(0)[11].y > hanging, "gravity points up now");
     let memory = |backend: &dyn tressfx_core::backend::Backend| backend.memory().bytes;
-    assert!(memory(&rig.backend) > 0);
-    rig.sim.destroy(&mut rig.backend);
-    assert_eq!(memory(&rig.backend), 0, "everything is freed");
+    assert!(memory(&*rig.backend) > 0);
+    rig.sim.destroy(&mut *rig.backend);
+    assert_eq!(memory(&*rig.backend), 0, "everything is freed");
 }
 
 #[test]
@@ -340,7 +344,7 @@ fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl(
 fn a_long_shake_leaves_nothing_non_finite() {
     let frames: u32 = std::env::var("TRESSFX_LONG_FRAMES").ok().and_then(|text| text.parse().ok()).unwrap_or(200);
     let strands = real(REAL[0]).unwrap_or_else(|| builtin("long", 300));
-    let Some(mut rig) = Rig::new(strands, SimParams::default(), &[]) else { return };
+    let Some(mut rig) = rig(strands, SimParams::default(), &[]) else { return };
     let motion = Motion { shake: 0.06, ..Motion::still(&rig.strands[0]) };
     for frame in 0..frames {
         rig.frame(&motion.input(f64::from(frame) / 60.0, 1.0 / 60.0));

@@ -32,7 +32,8 @@ pub struct VulkanDesc {
     pub instance: ash::Instance,
     /// The adapter that the device was made from.
     pub physical_device: vk::PhysicalDevice,
-    /// The device: Vulkan 1.3 with `synchronization2` and `dynamicRendering`.
+    /// The device: Vulkan 1.3 with `synchronization2` and `dynamicRendering`, and `independentBlend` where the targets of a pass
+    /// blend differently.
     pub device: ash::Device,
     /// A queue with graphics and compute: what is recorded goes to it.
     pub queue: vk::Queue,
@@ -230,6 +231,7 @@ fn open_device(started: &Instance, options: &VulkanOptions) -> Result<Opened> {
     };
     let features = vk::PhysicalDeviceFeatures::default()
         .robust_buffer_access(have.robust_buffer_access == vk::TRUE)
+        .independent_blend(have.independent_blend == vk::TRUE)
         .fragment_stores_and_atomics(enabled.fragment_writes)
         .vertex_pipeline_stores_and_atomics(have.vertex_pipeline_stores_and_atomics == vk::TRUE)
         .pipeline_statistics_query(enabled.statistics);

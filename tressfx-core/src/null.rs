@@ -8,6 +8,7 @@ use crate::error::{Label, Result};
 use crate::hazards::Hazards;
 use crate::id::{BufferId, PipelineId, Resource, Slots, TextureId};
 use crate::pass::{Command, PassList, Ticket};
+use crate::shader::{SlotKind, Stages};
 
 /// Accepts what a device with its caps would accept, runs nothing.
 #[derive(Debug)]
@@ -52,6 +53,14 @@ impl NullBackend {
                 Resource::Texture(TextureId(slot)) => drop(self.textures.expect(slot, "record")),
             }
         }
+        let kernels: Vec<&Kernel> = match command {
+            Command::Compute(pass) => vec![&pass.kernel],
+            Command::Raster(pass) => pass.draws.iter().map(|draw| &draw.kernel).collect(),
+            _ => Vec::new(),
+        };
+        for kernel in kernels {
+            self.pipelines.expect(kernel.pipeline.0, kernel.label());
+        }
     }
 }
 
@@ -74,7 +83,8 @@ impl Backend for NullBackend {
 
     fn create_compute(&mut self, desc: &ComputeDesc) -> Result<Kernel> {
         desc.shader.entry_point(naga::ShaderStage::Compute)?;
-        self.caps.check(desc.shader.label, &[Need::StorageBuffers(desc.shader.storage_buffers())])?;
+        let needs = [Need::Compute, Need::StorageBuffers(desc.shader.storage_buffers())];
+        self.caps.check(desc.shader.label, &needs)?;
         let pipeline = self.pipelines.insert(desc.shader.label).into();
         Ok(Kernel { pipeline, shader: desc.shader.clone() })
     }
@@ -82,7 +92,10 @@ impl Backend for NullBackend {
     fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
         desc.shader.entry_point(naga::ShaderStage::Vertex)?;
         desc.shader.entry_point(naga::ShaderStage::Fragment)?;
-        self.caps.check(desc.shader.label, &[Need::StorageBuffers(desc.shader.storage_buffers())])?;
+        self.caps.check(desc.shader.label, &[Need::Raster, Need::StorageBuffers(desc.shader.storage_buffers())])?;
+        if desc.shader.slots.iter().any(|slot| slot.kind == SlotKind::ReadWrite && slot.stages.has(Stages::FRAGMENT)) {
+            self.caps.check(desc.shader.label, &[Need::FragmentWrites])?;
+        }
         let pipeline = self.pipelines.insert(desc.shader.label).into();
         Ok(Kernel { pipeline, shader: desc.shader.clone() })
     }

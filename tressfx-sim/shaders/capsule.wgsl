@@ -20,25 +20,57 @@ fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
     return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper);
 }
 
+/// How many times as far as it is deep, or off the way to the centre, a vertex is turned at most: so many times an error of
+/// rounding grows in a contact.
+const GROWTH: f32 = 4.0;
+/// A strand that points straight at a centre counts as so far off, as a share of its parent's distance and to whatever side:
+/// else it would never get out. It is what positions can just tell.
+const TILT: f32 = 1e-7;
+
+/// Where a vertex has been turned to, and whether it is out.
+struct Turn { point: vec3<f32>, out: bool }
+
 /// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
-/// plane of parent, centre and `heading` that is a triangle of three known sides. Where the parent is so deep inside that no
-/// turn is enough, the vertex ends straight outwards.
+/// plane of parent, centre and `heading` that is a triangle of three known sides.
 ///
-/// `heading` is the way of the edge before anything moved. The way to where the vertex was would not do: in a strand that
-/// crosses the sphere nearly at right angles each vertex would multiply the errors of its parent.
-fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>) -> vec3<f32> {
+/// `heading` is the way of the edge before anything moved, and where the turn starts. The way to where the vertex was would
+/// not do: in a strand that crosses the sphere nearly at right angles each vertex would multiply the errors of its parent.
+///
+/// Where the edge points nearly at the centre, the plane is a matter of rounding, and the turn is like the square root of the
+/// depth. So the turn is bounded, and goes on in the next sub-step. Where the parent is so deep inside that it takes nearly
+/// the whole edge to get out, or more, the vertex ends as nearly straight outwards as the same bound allows.
+fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>) -> Turn {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
     let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
-    let sideways = direction_or(heading - dot(heading, outwards) * outwards, across(outwards));
-    // Cosine and sine of the angle between `outwards` and the new edge, from the sides; the sine as Heron has it, since a
-    // square root of 1 minus the squared cosine would lose half of the digits where the angle is small.
+    let before = direction_or(heading, outwards);
+    // Cosines and sines are those of the angle between `outwards` and the edge.
+    let old_cosine = dot(before, outwards);
+    let across_outwards = before - old_cosine * outwards;
+    let old_sine = sqrt(dot(across_outwards, across_outwards));
+    // On the sphere, from the sides; the sine as Heron has it, since a square root of 1 minus the squared cosine would lose
+    // half of the digits where the angle is small.
     let gap = distance + length - sphere.w;
     let product = gap * (distance + length + sphere.w) * (sphere.w - distance + length) * (sphere.w + distance - length);
     let twice = max(2.0 * distance * length, 1e-24);
-    let c = ((sphere.w - distance) * (sphere.w + distance) - length * length) / twice;
-    if (product <= 0.0) { return parent + length * sign(c) * outwards; }
-    return parent + length * (clamp(c, -1.0, 1.0) * outwards + min(sqrt(product) / twice, 1.0) * sideways);
+    var cosine = ((sphere.w - distance) * (sphere.w + distance) - length * length) / twice;
+    let least = select(0.0, 1.0 / GROWTH, cosine > 0.0);
+    cosine = min(cosine, sqrt(1.0 - least * least));
+    var sine = max(sqrt(max(product, 0.0)) / twice, least);
+    // Sine and cosine of the turn, and the bound of the tangent of its half.
+    let turn = vec2(old_sine * cosine - old_cosine * sine, old_cosine * cosine + old_sine * sine);
+    let inside = turn.x > 0.0;
+    let off = select(sine * sine, max(old_sine, TILT * distance / max(length, 1e-12)), inside);
+    let bound = 0.5 * GROWTH * min(off, abs(cosine - old_cosine));
+    let whole = abs(turn.x) <= bound * (1.0 + turn.y);
+    if (!whole) {
+        let half = select(-bound, bound, inside);
+        let part = vec2(2.0 * half, 1.0 - half * half) / (1.0 + half * half);
+        cosine = old_cosine * part.y + old_sine * part.x;
+        sine = old_sine * part.y - old_cosine * part.x;
+    }
+    let sideways = direction_or(across_outwards, across(outwards));
+    return Turn(parent + length * (cosine * outwards + sine * sideways), whole || !inside);
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin

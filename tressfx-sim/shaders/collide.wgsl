@@ -18,7 +18,8 @@ import package::vector::{direction_or, rotate, rotate_back};
 @group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
-/// A vertex that leaves one capsule may enter another.
+/// A vertex that leaves one capsule may enter another. One that cannot leave it in this sub-step is left there: another turn
+/// would multiply its errors again.
 const ROUNDS: u32 = 8u;
 /// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
 const INSIDE: f32 = 0.999999;
@@ -74,25 +75,26 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
     var contact = Contact(start, false, vec3(0.0), 0.0);
     var way = heading;
     for (var round = 0u; round < ROUNDS; round++) {
-        var touched = false;
+        var again = false;
         var clear = FAR;
         for (var i = 0u; i < arrayLength(&capsules); i++) {
             let sphere = nearest(capsules[i], contact.point);
             let from_center = contact.point - sphere.xyz;
             clear = min(clear, clearance(capsules[i], contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
-                contact.point = turned_out(parent, way, length, sphere);
+                let turn = turned_out(parent, way, length, sphere);
+                contact.point = turn.point;
                 contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
+                contact.touched = true;
                 // Between two capsules it is turned back and forth until it is out of both.
                 way = contact.point - parent;
-                touched = true;
+                again = again || turn.out;
             }
         }
-        if (!touched) {
+        if (!again) {
             contact.clear = clear;
             break;
         }
-        contact.touched = true;
     }
     return contact;
 }

@@ -7,6 +7,7 @@ use tressfx_core::view::Pose;
 
 use crate::error::SimError;
 use crate::params::{ParamError, within};
+use crate::path::{Before, Path};
 use crate::wind::Wind;
 
 /// How time is cut, and what counts as a teleport. The same for all sections.
@@ -120,12 +121,16 @@ pub struct Clock {
     last_length: f64,
     /// The head at the end of the last frame; `None` asks for a reset.
     head: Option<Pose>,
+    /// The head at the start of the last frame, and that frame's length, s.
+    before: Option<(Pose, f64)>,
     /// The head at the end of the last sub-step.
     simulated: Pose,
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
 }
 
+/// How far, as a factor, the lengths of two frames may differ for both to tell of the same motion.
+const ALIKE: f64 = 2.0;
 /// A share of a sub-step that is not worth waiting for: so that 2 s are as many sub-steps at any frame rate.
 const TOLERANCE: f64 = 1e-6;
 
@@ -137,8 +142,17 @@ impl Clock {
     pub fn new(params: ClockParams, bounds: Bounds) -> Result<Self, ParamError> {
         params.validate()?;
         let last_length = params.sub_step;
-        let simulated = Pose::IDENTITY;
-        Ok(Self { params, bounds, time: 0.0, behind: 0.0, last_length, head: None, simulated, velocities: None })
+        Ok(Self {
+            params,
+            bounds,
+            time: 0.0,
+            behind: 0.0,
+            last_length,
+            head: None,
+            before: None,
+            simulated: Pose::IDENTITY,
+            velocities: None,
+        })
     }
 
     /// The parameters.
@@ -171,7 +185,7 @@ impl Clock {
         motion(&self.simulated, &self.head.unwrap_or(self.simulated))
     }
 
-    /// Cuts a frame. The head moves evenly during it.
+    /// Cuts a frame. The head goes on during it as it did in the last one.
     pub fn advance(&mut self, dt: f64, head: Pose) -> Frame {
         let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
         let start = if teleported { None } else { self.head };
@@ -180,17 +194,19 @@ impl Clock {
             frame.reset = Some(head);
             self.simulated = head;
             self.velocities = None;
+            self.before = None;
             head
         });
         let acceleration = self.acceleration(dt, &last, &head);
         let dt = dt.max(0.0);
         frame.dropped = (self.behind + dt - self.params.max_frame).clamp(0.0, dt);
         let simulated = dt - frame.dropped;
+        let path = self.path(simulated, last, head);
         let length = self.params.sub_step;
         let count = ((self.behind + simulated) / length + TOLERANCE).floor() as u32;
         for index in 1..=count {
             let into_frame = f64::from(index) * length - self.behind;
-            let pose = interpolate(&last, &head, into_frame / simulated);
+            let pose = path.at(into_frame / simulated);
             self.time += length;
             frame.sub_steps.push(SubStep {
                 length,
@@ -205,7 +221,14 @@ impl Clock {
         }
         self.behind += simulated - f64::from(count) * length;
         self.head = Some(head);
+        self.before = Some((last, dt)).filter(|_| frame.reset.is_none() && frame.dropped == 0.0);
         frame
+    }
+
+    /// The way of the head in a frame of which so much time is simulated.
+    fn path(&self, simulated: f64, last: Pose, head: Pose) -> Path {
+        let before = self.before.map(|(head, dt)| Before { head, length: dt / simulated });
+        Path::new(before.filter(|before| (1.0 / ALIKE..=ALIKE).contains(&before.length)), last, head)
     }
 
     fn is_teleport(&self, last: &Pose, head: &Pose) -> bool {
@@ -232,11 +255,6 @@ fn corners(bounds: &Bounds) -> [Vec3; 8] {
         let (min, max) = (bounds.min, bounds.max);
         Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
     })
-}
-
-/// Ends and a head at rest are met exactly.
-fn interpolate(from: &Pose, to: &Pose, t: f64) -> Pose {
-    if from == to || t >= 1.0 - TOLERANCE { *to } else { from.interpolate(to, t as f32) }
 }
 
 /// The motion that takes `from` to `to`; the identity exactly for a head at rest.
@@ -274,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn the_head_moves_evenly_and_arrives() {
+    fn the_head_moves_evenly_in_the_first_frame_and_arrives() {
         let mut clock = clock();
         let frame = clock.advance(1.0 / 60.0, moved(0.2));
         let heads: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.head.translation.x).collect();
@@ -287,6 +305,30 @@ mod tests {
         assert!((clock.head_lead().translation.x - 0.05).abs() < 1e-6);
         let frame = clock.advance(1.0 / 240.0, moved(0.35));
         assert!((frame.sub_steps[0].motion.translation.x - 0.15).abs() < 1e-6);
+    }
+
+    /// Places of a head within the frames that bring it to these places.
+    fn places(clock: &mut Clock, dt: f64, ends: &[f32]) -> Vec<f32> {
+        let frames = ends.iter().flat_map(|&end| clock.advance(dt, moved(end)).sub_steps);
+        frames.map(|sub_step| sub_step.head.translation.x).collect()
+    }
+
+    #[test]
+    fn the_head_goes_on_as_it_did_where_the_last_frame_tells_how() {
+        let close = |is: &[f32], should_be: &[f32]| {
+            assert!(is.iter().zip(should_be).all(|(one, other)| (one - other).abs() < 1e-5), "{is:?} {should_be:?}");
+        };
+        let mut one = clock();
+        close(&places(&mut one, 1.0 / 60.0, &[0.0, 0.4]), &[0.0, 0.0, 0.15, 0.4]);
+        one.reset();
+        close(&places(&mut one, 1.0 / 60.0, &[0.5, 0.7]), &[0.5, 0.5, 0.6, 0.7]);
+        // A frame of another length, one that was too long, and a teleport tell nothing.
+        close(&places(&mut one, 1.0 / 24.0, &[0.7]), &[0.7; 5]);
+        close(&places(&mut one, 1.0 / 60.0, &[0.9]), &[0.8, 0.9]);
+        one.advance(10.0, moved(0.0));
+        close(&places(&mut one, 0.1, &[1.2])[..2], &[0.1, 0.2]);
+        assert!(one.advance(1.0 / 60.0, moved(50.0)).teleported);
+        close(&places(&mut one, 1.0 / 60.0, &[50.2]), &[50.1, 50.2]);
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod error;
 mod kernel;
 pub mod metrics;
 mod params;
+mod path;
 pub mod reference;
 mod section;
 mod sim;

@@ -66,7 +66,7 @@ pub(crate) struct Compare {
 }
 
 /// What `render` and `simulate` share.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Scene {
     /// Files, or `builtin:NAME[:STRANDS[:VERTICES]]`; several become the sections of one groom
     #[arg(required = true, value_name = "GROOM")]
@@ -115,7 +115,7 @@ pub(crate) struct Scene {
     pub(crate) pipeline_cache: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct Render {
     #[command(flatten)]
     pub(crate) scene: Scene,

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 
 mod backend;
+mod both;
 mod camera;
 mod cli;
 mod compare;
@@ -24,12 +25,13 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::cli::{Cli, Command};
+use crate::cli::{BackendName, Cli, Command};
 
 /// Exit codes: 0 when all is well, 1 when something failed, 2 (by clap) when the words on the command line are wrong.
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Info(args) => info::run(&args),
+        Command::Render(args) if args.scene.backend == BackendName::Both => both::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Convert(args) => convert::run(&args),

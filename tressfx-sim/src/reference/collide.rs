@@ -9,6 +9,8 @@ use crate::step::Step;
 
 const ROUNDS: u32 = 8;
 const INSIDE: f64 = 0.999999;
+const GROWTH: f64 = 4.0;
+const TILT: f64 = 1e-7;
 
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
 pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
@@ -46,17 +48,18 @@ fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, head
     let mut normal = None;
     let mut way = heading;
     for _ in 0..ROUNDS {
-        let mut touched = false;
+        let mut again = false;
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < INSIDE * radius * radius {
-                point = turned_out(parent, way, length, center, radius);
+                let (turned, out) = turned_out(parent, way, length, center, radius);
+                point = turned;
                 normal = Some(direction_or(point - center, normal.unwrap_or(DVec3::ZERO)));
                 way = point - parent;
-                touched = true;
+                again |= out;
             }
         }
-        if !touched {
+        if !again {
             break;
         }
     }
@@ -72,20 +75,32 @@ fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {
     (a + t * axis, radius_a + t * (radius_b - radius_a))
 }
 
-/// The vertex on the sphere, at the same distance from its parent.
-fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius: f64) -> DVec3 {
+/// The vertex turned about its parent, onto the sphere or as far as the bound allows, and whether it is out.
+fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius: f64) -> (DVec3, bool) {
     let from_center = parent - center;
     let distance = from_center.length();
     let outwards = direction_or(from_center, DVec3::Y);
-    let sideways = direction_or(heading - heading.dot(outwards) * outwards, across(outwards));
+    let before = direction_or(heading, outwards);
+    let old_cosine = before.dot(outwards);
+    let across_outwards = before - old_cosine * outwards;
+    let old_sine = across_outwards.length();
     let gap = distance + length - radius;
     let product = gap * (distance + length + radius) * (radius - distance + length) * (radius + distance - length);
     let twice = (2.0 * distance * length).max(1e-24);
-    let c = ((radius - distance) * (radius + distance) - length * length) / twice;
-    if product <= 0.0 {
-        return parent + length * c.signum() * outwards;
+    let mut cosine = ((radius - distance) * (radius + distance) - length * length) / twice;
+    let least: f64 = if cosine > 0.0 { 1.0 / GROWTH } else { 0.0 };
+    cosine = cosine.min((1.0 - least * least).sqrt());
+    let mut sine = (product.max(0.0).sqrt() / twice).max(least);
+    let turn = f64::atan2(old_sine * cosine - old_cosine * sine, old_cosine * cosine + old_sine * sine);
+    let off = if turn > 0.0 { old_sine.max(TILT * distance / length.max(1e-12)) } else { sine * sine };
+    let bound = 2.0 * (0.5 * GROWTH * off.min((cosine - old_cosine).abs())).atan();
+    let whole = turn.abs() <= bound;
+    if !whole {
+        let (sin, cos) = (turn.signum() * bound).sin_cos();
+        (cosine, sine) = (old_cosine * cos + old_sine * sin, old_sine * cos - old_cosine * sin);
     }
-    parent + length * (c.clamp(-1.0, 1.0) * outwards + (product.sqrt() / twice).min(1.0) * sideways)
+    let sideways = direction_or(across_outwards, across(outwards));
+    (parent + length * (cosine * outwards + sine * sideways), whole || turn <= 0.0)
 }
 
 /// What friction leaves of a displacement along a surface.

@@ -1,0 +1,179 @@
+//! A groom on its way from simulation to picture, on any backend: what compares backends, and what counts and times whole
+//! frames.
+
+use glam::Vec3;
+use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::builtin::Builtin;
+use tressfx_core::mesh::Mesh;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
+    SectionDraw, StrandInfo, Surface, Targets,
+};
+use tressfx_sim::{HairSim, SectionDesc, SimParams};
+
+use crate::run_and_read;
+use crate::sim::Motion;
+
+/// What the colour target holds: bytes as a screen takes them.
+const TARGET: Format = Format::Rgba8Srgb;
+
+/// What is shown, and how.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Its name in messages.
+    pub name: String,
+    /// The hair.
+    pub strands: Strands,
+    /// What rendering asks for beside: it takes a while to be found.
+    pub info: StrandInfo,
+    /// What it collides with.
+    pub capsules: Vec<Capsule>,
+    /// What it grows on.
+    pub mesh: Option<Mesh>,
+    /// How it moves.
+    pub motion: Motion,
+    /// How stiff it is.
+    pub params: SimParams,
+    /// How it looks.
+    pub material: Material,
+    /// Where it is seen from, as a direction from its middle; `Vec3::Z` is its face.
+    pub from: Vec3,
+    /// How near the eye is, as a share of the distance at which everything is in the picture.
+    pub distance: f32,
+    /// Fragments of a pixel that are sorted exactly.
+    pub k: u32,
+    /// Width and height of the picture.
+    pub size: [u32; 2],
+}
+
+impl Scene {
+    /// Strands at their defaults, from in front.
+    pub fn new(name: &str, strands: Strands, size: [u32; 2]) -> Self {
+        Self {
+            name: name.to_owned(),
+            motion: Motion::wild(&strands),
+            info: StrandInfo::new(&strands),
+            strands,
+            capsules: Vec::new(),
+            mesh: None,
+            params: SimParams::default(),
+            material: Material::default(),
+            from: Vec3::Z,
+            distance: 1.0,
+            k: 8,
+            size,
+        }
+    }
+
+    /// A built-in groom, `NAME:strands:vertices`, on its body.
+    ///
+    /// # Panics
+    /// If there is none of that name.
+    pub fn builtin(name: &str, size: [u32; 2]) -> Self {
+        let builtin = Builtin::parse(name).expect("a built-in groom");
+        let strands = Strands::new(&builtin.asset(), &StrandOptions::default()).expect("strands");
+        let scene = Self::new(name, strands, size);
+        Self { capsules: builtin.capsules(), mesh: Some(builtin.mesh()), ..scene }
+    }
+
+    fn view(&self) -> View {
+        let points: Vec<Vec3> = self.strands.rest_of_all().iter().map(|point| point.truncate()).collect();
+        let around = View::around(&points, self.size);
+        let reach = self.distance * around.eye.distance(around.target);
+        View { eye: around.target + reach * self.from.normalize(), ..around }
+    }
+}
+
+/// A scene on a backend.
+pub struct Show<B> {
+    /// The GPU.
+    pub backend: B,
+    /// The simulation.
+    pub sim: HairSim,
+    scene: Scene,
+    view: View,
+    lights: Lights,
+    targets: Targets,
+    body: ScenePass,
+    meshes: Vec<SceneMesh>,
+    section: Section,
+    renderer: HairRenderer,
+    frame: u32,
+}
+
+impl<B: Backend> Show<B> {
+    /// # Panics
+    /// If the backend cannot make what the scene needs.
+    pub fn new(mut backend: B, scene: &Scene) -> Self {
+        let gpu: &mut dyn Backend = &mut backend;
+        let desc = SectionDesc { strands: &scene.strands, params: scene.params.clone() };
+        let sim = HairSim::new(gpu, &[desc], &scene.capsules).expect("a simulation");
+        let view = scene.view();
+        let mut texture =
+            |label, format| gpu.create_texture(&TextureDesc { label, size: scene.size, format }).expect("a texture");
+        let targets = Targets { color: texture("show.color", TARGET), depth: texture("show.depth", Format::Depth32F) };
+        let mut uploads = PassList::new();
+        let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
+        let section = Section::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
+        let section = section.expect("a section");
+        let desc = RenderDesc { k: scene.k, ..RenderDesc::new(scene.size, TARGET) };
+        let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
+        let draw = SectionDraw { section: &section, material: &scene.material, pose: Pose::IDENTITY };
+        renderer.reserve(gpu, &view, &[draw]).expect("a pool");
+        let body = ScenePass::new(gpu, TARGET, view.depth).expect("a scene pass");
+        gpu.run(&uploads).expect("the uploads run");
+        let lights = Lights::default();
+        Self { backend, sim, scene: scene.clone(), view, lights, targets, body, meshes, section, renderer, frame: 0 }
+    }
+
+    /// Writes the next frame of 1/60 s, simulation and picture.
+    ///
+    /// # Panics
+    /// If the motion is refused.
+    pub fn record(&mut self, list: &mut PassList) {
+        self.frame += 1;
+        let seconds = f64::from(self.frame) / 60.0;
+        let input = self.scene.motion.input(seconds, 1.0 / 60.0);
+        self.sim.step(list, &input).expect("the input is fine");
+        let Self { view, lights, targets, .. } = self;
+        let body = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: input.head };
+        let meshes: Vec<_> = self.meshes.iter().map(body).collect();
+        self.body.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
+        let pose = self.sim.head_lead();
+        let draw = SectionDraw { section: &self.section, material: &self.scene.material, pose };
+        self.renderer.draw(list, view, lights, targets, &[draw]);
+    }
+
+    /// Runs so many frames.
+    ///
+    /// # Panics
+    /// If the backend fails.
+    pub fn play(&mut self, frames: u32) {
+        let mut list = PassList::new();
+        for _ in 0..frames {
+            list.clear_commands();
+            self.record(&mut list);
+            self.backend.run(&list).expect("the frame runs");
+        }
+    }
+
+    /// The picture of the last frame, four bytes a pixel, and what was drawn in it.
+    pub fn picture(&mut self) -> (Vec<u8>, Counters) {
+        let mut list = PassList::new();
+        let counters = self.renderer.read_counters(&mut list);
+        let picture = list.read_texture(self.targets.color);
+        let picture = run_and_read(&mut self.backend, &list, picture);
+        (picture, Counters::from_bytes(&self.backend.read(counters).expect("the list has run")))
+    }
+
+    /// Positions of all strands, as the GPU has them.
+    pub fn positions(&mut self) -> Vec<u8> {
+        let mut list = PassList::new();
+        let tickets: Vec<Ticket> = self.sim.read_positions(&mut list);
+        run_and_read(&mut self.backend, &list, tickets[0])
+    }
+}

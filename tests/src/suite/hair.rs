@@ -1,0 +1,189 @@
+//! Hair: each kernel of the simulation, a second of a groom, and its picture, against their f64 references.
+
+use glam::{DVec3, EulerRot, Quat, Vec3};
+use tressfx_core::backend::DepthOrder;
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::Pose;
+use tressfx_render::{Material, reference as picture};
+use tressfx_sim::reference::{self, Guide};
+use tressfx_sim::step::{Step, Units};
+use tressfx_sim::{SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
+
+use super::subject::Subject;
+use crate::render::{Groom, Stage};
+use crate::sim::{Motion, Rig, random_strands, strand_errors, wide, worst};
+
+/// Of a strand's length, for one kernel.
+const TOLERANCE: f64 = 1e-5;
+/// Of a strand's length, for a second, for all strands but one in a hundred.
+const TOLERANCE_OF_A_SECOND: f64 = 1e-3;
+
+fn params() -> SimParams {
+    SimParams { global_stiffness: 0.3, global_range: 0.6, ..SimParams::default() }
+}
+
+/// A ball inside of the roots of the random strands, and one among the tips.
+fn capsules(strands: &Strands) -> Vec<Capsule> {
+    let tip = strands.rest[strands.vertices as usize - 1].truncate();
+    let ball = |at: Vec3, radius: f32| Capsule { a: at, b: at, radius_a: radius, radius_b: radius };
+    vec![ball(Vec3::ZERO, 0.09), ball(tip, 0.12 * strands.bounds.radius())]
+}
+
+/// A sub-step in which everything happens, and nothing moves further than the shortest edge is long.
+fn step(strands: &Strands) -> Step {
+    let motion = Pose {
+        rotation: Quat::from_euler(EulerRot::XYZ, 0.003, -0.002, 0.004),
+        translation: Vec3::new(0.0003, -0.0004, 0.0005),
+    };
+    let head = motion.after(&Motion::wild(strands).head(0.1));
+    let sub_step = SubStep { length: 1.0 / 240.0, length_ratio: 1.0, time: 0.7, head, motion, acceleration: 0.0 };
+    let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
+    Step::new(&params(), &units, &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
+}
+
+/// Random strands that have moved for a while, and a step for them.
+fn moved(t: &Subject) -> (Rig, Step, Vec<Capsule>) {
+    let strands = random_strands(24, 12, 1, 9);
+    let (step, capsules, motion) = (step(&strands), capsules(&strands), Motion::wild(&strands));
+    let mut rig = Rig::new(t.another(), vec![(strands, params())], &capsules);
+    rig.play(&motion, 0.1, 60);
+    (rig, step, capsules)
+}
+
+/// Positions and previous positions of the guides.
+fn state(rig: &mut Rig) -> [Vec<DVec3>; 2] {
+    let guides = rig.strands[0].rest.len();
+    [wide(&rig.positions(0)[..guides]), wide(&rig.previous(0))]
+}
+
+/// Runs one kernel on the GPU's own state, and `reference` on the same.
+fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[Capsule])) {
+    let (mut rig, step, capsules) = moved(t);
+    let before = state(&mut rig);
+    rig.run(|sim, list| {
+        sim.record_step(list, 0, &step);
+        sim.record_stage(list, kernel, true);
+    });
+    let found = (rig.positions(0), rig.previous(0));
+    let strands = &rig.strands[0];
+    let [mut positions, mut previous] = before.clone();
+    for guide in 0..strands.guides {
+        let start = (guide * strands.vertices) as usize;
+        let range = start..start + strands.vertices as usize;
+        let mut of_guide = Guide {
+            rest: &strands.rest[range.clone()],
+            rest_lengths: &strands.rest_lengths[range.clone()],
+            positions: &mut positions[range.clone()],
+            previous: &mut previous[range],
+        };
+        reference(&step, &mut of_guide, guide, &capsules);
+    }
+    assert!([&positions, &previous] != [&before[0], &before[1]], "it does something");
+    for (found, expected) in [(&found.0[..positions.len()], &positions), (&found.1[..], &previous)] {
+        let error = worst(strands, found, expected);
+        assert!(error <= TOLERANCE, "{}: {error:e} of strand length", kernel.label());
+    }
+}
+
+pub(super) fn integrate_is_as_in_f64(t: &mut Subject) {
+    kernel(t, Kernel::Integrate, |step, guide, _, _| reference::integrate(step, guide));
+}
+
+pub(super) fn velocity_shock_is_as_in_f64(t: &mut Subject) {
+    kernel(t, Kernel::VelocityShock, |step, guide, _, _| reference::velocity_shock(step, guide));
+}
+
+pub(super) fn local_shape_is_as_in_f64(t: &mut Subject) {
+    let iterations = params().local_iterations;
+    kernel(t, Kernel::LocalShape, |step, guide, _, _| reference::local_shape(step, guide, iterations));
+}
+
+pub(super) fn length_is_as_in_f64(t: &mut Subject) {
+    let sweeps = params().length_iterations;
+    kernel(t, Kernel::Length, |step, guide, strand, _| {
+        assert!(!reference::length(step, guide, strand, sweeps), "finite");
+    });
+}
+
+pub(super) fn collide_is_as_in_f64(t: &mut Subject) {
+    kernel(t, Kernel::Collide, |step, guide, _, capsules| reference::collide(step, guide, capsules));
+}
+
+pub(super) fn follow_is_as_in_f64(t: &mut Subject) {
+    let (mut rig, step, _) = moved(t);
+    rig.run(|sim, list| {
+        sim.record_step(list, 0, &step);
+        sim.record_stage(list, Kernel::Follow, false);
+    });
+    let positions = rig.positions(0);
+    let strands = &rig.strands[0];
+    let (guides, all) = (strands.rest.len(), wide(&positions));
+    let guide = |index: usize| &all[index * strands.vertices as usize..(index + 1) * strands.vertices as usize];
+    let offsets = strands.follow_offsets.iter().enumerate();
+    let expected: Vec<_> = offsets
+        .flat_map(|(index, &offset)| reference::follow(&step, guide(index % strands.guides as usize), offset))
+        .collect();
+    let error = worst(strands, &positions[guides..], &expected);
+    assert!(!expected.is_empty() && error <= TOLERANCE, "{error:e} of strand length");
+}
+
+pub(super) fn tangents_are_as_in_f64(t: &mut Subject) {
+    let (mut rig, ..) = moved(t);
+    rig.run(|sim, list| sim.record_stage(list, Kernel::Tangents, false));
+    let (positions, tangents) = (wide(&rig.positions(0)), rig.tangents(0));
+    let vertices = rig.strands[0].vertices as usize;
+    for (points, tangents) in positions.chunks(vertices).zip(tangents.chunks(vertices)) {
+        for (found, expected) in tangents.iter().zip(reference::tangents(points)) {
+            let error = found.truncate().as_dvec3().distance(expected);
+            assert!(error < 1e-4, "{found} is not {expected}");
+        }
+    }
+}
+
+pub(super) fn a_second_is_as_in_f64(t: &mut Subject) {
+    let strands = random_strands(64, 16, 0, 3);
+    let (motion, params) = (Motion::turning(&strands), SimParams::default());
+    let mut rig = Rig::new(t.another(), vec![(strands.clone(), params.clone())], &[]);
+    let mut reference = reference::Simulation::new(&[SectionDesc { strands: &strands, params }], &[]).expect("fine");
+    rig.play(&motion, 1.0, 60);
+    for frame in 0..=60 {
+        let dt = if frame == 0 { 0.0 } else { 1.0 / 60.0 };
+        reference.step(&motion.input(f64::from(frame) / 60.0, dt)).expect("the input is fine");
+    }
+    let errors = strand_errors(&strands, &rig.positions(0), &reference.positions(0));
+    let most = errors[(errors.len() - 1) * 99 / 100];
+    assert!(most < TOLERANCE_OF_A_SECOND, "{most:e} of strand length");
+}
+
+fn material() -> Material {
+    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+}
+
+fn picture_of(t: &Subject, order: DepthOrder) {
+    let mut stage = Stage::new(t.another(), |desc, view| (desc.k, view.depth) = (16, order));
+    let groom = Groom::wavy(60, 12, 1, material());
+    let exact = picture::exact(&stage.frame(), &[groom.reference()], &|_| order.far());
+    let difference = stage.hair(&[&groom]).difference(&exact);
+    assert!(exact.iter().any(|pixel| pixel.w > 0.5), "the groom is in the picture");
+    assert!(difference.max < 0.005 && difference.psnr > 65.0, "{order:?}: {difference:?}");
+}
+
+pub(super) fn a_picture_is_as_in_f64_in_standard_order(t: &mut Subject) {
+    picture_of(t, DepthOrder::Standard);
+}
+
+pub(super) fn a_picture_is_as_in_f64_in_reverse_order(t: &mut Subject) {
+    picture_of(t, DepthOrder::Reverse);
+}
+
+pub(super) fn a_picture_is_the_same_twice_to_the_bit(t: &mut Subject) {
+    let groom = Groom::wavy(300, 12, 2, material());
+    let mut stage = Stage::new(t.another(), |_, _| ());
+    let first = stage.hair(&[&groom]);
+    let mut other = Stage::new(t.another(), |_, _| ());
+    for again in [stage.hair(&[&groom]), other.hair(&[&groom])] {
+        assert_eq!(first.counters, again.counters);
+        assert!(first.bytes == again.bytes);
+    }
+}

@@ -1,0 +1,95 @@
+//! wgpu and raw Vulkan, from simulation to picture: the same, scene by scene.
+
+mod support;
+
+use glam::Vec3;
+use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
+use tressfx_compare::{Comparison, Picture, compare};
+use tressfx_conformance::show::{Scene, Show};
+use tressfx_conformance::sim::{REAL, real};
+use tressfx_core::backend::Backend;
+use tressfx_render::Material;
+use tressfx_sim::SimParams;
+
+use support::gpu;
+
+const SIZE: [u32; 2] = [256, 144];
+const FRAMES: u32 = 10;
+const GROOMS: [&str; 5] = ["straight:1500:16", "wavy:1500:24", "curly:1200:48", "long:2000:32", "fur:4000:6"];
+
+/// Of the pixels, how many may differ.
+const DIFFERING: f64 = 1e-5;
+const FLIP: f64 = 0.0005;
+
+/// Each groom from in front, from the side and from near by; as it is, and limp, dark, glossy and hardly sorted.
+fn scenes(groom: &Scene) -> Vec<Scene> {
+    let views =
+        [("front", Vec3::Z, 1.0), ("side", Vec3::new(-1.0, 0.2, 0.1), 1.0), ("near", Vec3::new(0.4, 0.5, 1.0), 0.4)];
+    let looks = [
+        ("default", SimParams::default(), Material::default(), 8),
+        (
+            "limp",
+            SimParams { local_stiffness: 0.2, damping: 0.4, ..SimParams::default() },
+            Material { base_color: [0.02, 0.01, 0.01], opacity: 0.4, tip_opacity: 0.2, ..Material::default() },
+            3,
+        ),
+    ];
+    let pairs = views.iter().flat_map(|view| looks.iter().map(move |look| (view, look)));
+    pairs
+        .map(|((view, from, distance), (look, params, material, k))| Scene {
+            name: format!("{} {view} {look}", groom.name),
+            from: *from,
+            distance: *distance,
+            params: params.clone(),
+            material: *material,
+            k: *k,
+            ..groom.clone()
+        })
+        .collect()
+}
+
+fn shown(backend: impl Backend, scene: &Scene) -> (Picture, Vec<u8>, u32) {
+    let mut show = Show::new(backend, scene);
+    show.play(FRAMES);
+    let (picture, counters) = show.picture();
+    assert_eq!(counters.dropped, 0, "{}", scene.name);
+    (Picture::new(SIZE, picture).unwrap(), show.positions(), counters.pixels_with_hair)
+}
+
+/// What both backends make of a scene; `None` where there is no GPU.
+fn compared(scene: &Scene) -> Option<Comparison> {
+    let (a, a_positions, hair) = shown(*gpu()?, scene);
+    let vulkan = VulkanBackend::open(&VulkanOptions { validation: true, ..Default::default() }).unwrap();
+    let (b, b_positions, _) = shown(vulkan, scene);
+    assert!(hair * 50 > SIZE[0] * SIZE[1], "{}: {hair} pixels with hair", scene.name);
+    assert!(a_positions == b_positions, "{}: positions differ", scene.name);
+    Some(compare(&a, &b).unwrap())
+}
+
+fn hold(scenes: &[Scene]) {
+    let mut differing = 0.0;
+    for scene in scenes {
+        let Some(comparison) = compared(scene) else { return };
+        let Comparison { flip_mean, max_difference, differing_share, .. } = comparison;
+        println!("{}: FLIP {flip_mean:.6}, largest {max_difference}, differing {differing_share:.6}", scene.name);
+        assert!(flip_mean < FLIP, "{}: FLIP {flip_mean}", scene.name);
+        assert!(max_difference <= 1 || differing_share <= DIFFERING, "{}: {max_difference} of 255", scene.name);
+        differing += if max_difference > 1 { differing_share } else { 0.0 };
+    }
+    assert!(differing <= DIFFERING * scenes.len() as f64, "{differing} of the pixels differ");
+}
+
+#[test]
+fn built_in_grooms_are_the_same_on_both_backends() {
+    let scenes: Vec<Scene> = GROOMS.iter().flat_map(|name| scenes(&Scene::builtin(name, SIZE))).collect();
+    assert!(scenes.len() >= 24);
+    hold(&scenes);
+}
+
+#[test]
+fn real_grooms_are_the_same_on_both_backends() {
+    for path in REAL {
+        let Some(strands) = real(path) else { return };
+        hold(&[Scene::new(path, strands, SIZE)]);
+    }
+}

@@ -1,0 +1,122 @@
+//! Contacts that are hard to resolve: strands that point nearly at the centre of a ball, where the circle that a vertex can
+//! reach nearly touches the ball, and strands that barely reach out of it.
+
+mod support;
+
+use glam::{Quat, Vec3, Vec4};
+use support::rig;
+use tressfx_conformance::sim::{Motion, Random, Rig, strand_errors, strands_of, wide};
+use tressfx_core::asset::{AssetFormat, HairAsset};
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::Pose;
+use tressfx_sim::reference::{self, Guide};
+use tressfx_sim::step::{Step, Units};
+use tressfx_sim::{SimParams, Stage, StepInput, SubStep};
+
+use support::rig;
+
+const GUIDES: usize = 2000;
+const VERTICES: [u32; 5] = [2, 3, 4, 5, 16];
+const LENGTH: f32 = 0.1;
+const RADIUS: f32 = 0.2;
+const BALL: Capsule = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: RADIUS, radius_b: RADIUS };
+
+/// Nothing but contacts moves a strand.
+fn limp() -> SimParams {
+    SimParams { gravity: Vec3::ZERO, global_stiffness: 0.0, local_stiffness: 0.0, ..SimParams::default() }
+}
+
+/// From 10^-7 to 1, as many between one power of ten and the next as between any other.
+fn share(random: &mut Random) -> f32 {
+    10f32.powf(3.5 * (random.signed() - 1.0))
+}
+
+/// Straight strands, each given by its root and the way to its tip.
+fn straight(vertices: u32, strand: impl Fn(&mut Random) -> (Vec3, Vec3)) -> Strands {
+    let mut random = Random::new(u64::from(vertices));
+    let mut points = Vec::new();
+    for _ in 0..GUIDES {
+        let (root, way) = strand(&mut random);
+        let edge = way * LENGTH / (vertices - 1) as f32;
+        points.extend((0..vertices).map(|i| (root + edge * i as f32).to_array()));
+    }
+    strands_of(HairAsset::new("straight", AssetFormat::Builtin, points, vec![vertices; GUIDES]), 0)
+}
+
+/// From outside towards the centre of the ball, past it at any distance; the tips are inside at any depth.
+fn aimed(vertices: u32) -> Strands {
+    straight(vertices, |random| {
+        let (out, aside) = (random.vector().normalize(), random.vector().normalize());
+        let root = out * (RADIUS + LENGTH * (1.0 - 0.9 * share(random)));
+        (root, (0.3 * share(random) * aside - out).normalize())
+    })
+}
+
+/// From so deep inside the ball that the first edge just reaches out, or just does not, in any direction.
+fn buried(vertices: u32) -> Strands {
+    straight(vertices, |random| {
+        let edge = LENGTH / (vertices - 1) as f32;
+        let depth = edge * (1.0 + 0.5 * share(random) * random.signed().signum());
+        (random.vector().normalize() * (RADIUS - depth), random.vector().normalize())
+    })
+}
+
+/// The kernel, once from the rest pose, on a head that moves: positions and previous positions.
+fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<glam::DVec3>); 2] {
+    let motion = Pose { rotation: Quat::from_rotation_z(0.002), translation: Vec3::X * 0.0003 };
+    let sub_step = SubStep { length: 1.0 / 120.0, length_ratio: 1.0, time: 0.0, head, motion, acceleration: 0.0 };
+    let step = Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None);
+    rig.frame(&StepInput::new(0.0, head));
+    let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
+    rig.run(|sim, list| {
+        sim.record_step(list, 0, &step);
+        sim.record_stage(list, Stage::Collide, false);
+    });
+    let vertices = rig.strands[0].vertices as usize;
+    for guide in 0..GUIDES {
+        let range = guide * vertices..(guide + 1) * vertices;
+        let mut of_guide = Guide {
+            rest: &rig.strands[0].rest[range.clone()],
+            rest_lengths: &rig.strands[0].rest_lengths[range.clone()],
+            positions: &mut positions[range.clone()],
+            previous: &mut previous[range],
+        };
+        reference::collide(&step, &mut of_guide, &[BALL]);
+    }
+    [(rig.positions(0), positions), (rig.previous(0), previous)]
+}
+
+#[test]
+fn hard_contacts_match_the_reference_for_every_strand() {
+    let head = Pose { rotation: Quat::from_rotation_y(0.7), translation: Vec3::new(0.02, -0.01, 0.03) };
+    for vertices in VERTICES {
+        for (name, strands) in [("aimed", aimed(vertices)), ("buried", buried(vertices))] {
+            let Some(mut rig) = rig(strands, limp(), &[BALL]) else { return };
+            for (gpu, reference) in collided(&mut rig, head) {
+                let errors = strand_errors(&rig.strands[0], &gpu, &reference);
+                let (median, largest) = (errors[GUIDES / 2], errors[GUIDES - 1]);
+                println!(
+                    "{name}, {vertices} vertices: {median:.1e} (median), {largest:.1e} (largest) of strand length"
+                );
+                assert!(largest <= 1e-5, "{name}, {vertices} vertices: {largest:e}");
+            }
+        }
+    }
+}
+
+/// A bounded turn takes several sub-steps, most of them where the strand points exactly at the centre.
+#[test]
+fn strands_that_point_at_a_centre_get_out() {
+    for vertices in VERTICES {
+        let Some(mut rig) = rig(aimed(vertices), limp(), &[BALL]) else { return };
+        let motion = Motion::still(&rig.strands[0]);
+        let deepest = [0.05, 0.1, 0.25].map(|seconds| {
+            rig.play(&motion, seconds, 60);
+            let movable = rig.positions(0).into_iter().filter(|position| position.w > 0.0);
+            movable.map(|position| -BALL.distance(position.truncate())).fold(0.0, f32::max)
+        });
+        println!("{vertices} vertices: deepest after 6, 18 and 48 sub-steps: {deepest:?} m");
+        assert!(deepest[2] < 1e-6, "{vertices} vertices: {deepest:?}");
+    }
+}

@@ -1,0 +1,41 @@
+//! The GPU that the tests of this folder run on.
+#![allow(dead_code, reason = "each test takes what it needs")]
+
+use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_conformance::render::Stage;
+use tressfx_conformance::sim::Rig;
+use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::View;
+use tressfx_render::RenderDesc;
+use tressfx_sim::SimParams;
+
+/// A wgpu backend, or `None` where there is no adapter and `TRESSFX_NO_GPU` says that this is known.
+///
+/// # Panics
+/// If there is no adapter and nobody said so: a test must not pass because it did not run.
+pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
+    match WgpuBackend::headless() {
+        Ok(backend) => Some(Box::new(backend)),
+        Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {
+            eprintln!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A screen on a [`gpu`].
+pub(crate) fn stage(change: impl FnOnce(&mut RenderDesc, &mut View)) -> Option<Stage> {
+    Some(Stage::new(gpu()?, change))
+}
+
+/// A simulation of one section on a [`gpu`].
+pub(crate) fn rig(strands: Strands, params: SimParams, capsules: &[Capsule]) -> Option<Rig> {
+    rig_of_sections(vec![(strands, params)], capsules)
+}
+
+/// A simulation of several sections on a [`gpu`].
+pub(crate) fn rig_of_sections(sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Option<Rig> {
+    Some(Rig::new(gpu()?, sections, capsules))
+}
