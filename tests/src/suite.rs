@@ -108,7 +108,7 @@ pub fn test<B: Backend + 'static, E: Display>(name: &str, make: impl Fn() -> Res
 }
 
 /// Says so past the capture of test output: what did not run must be seen.
-fn say_skipped(name: &str, why: &str) {
+pub(crate) fn say_skipped(name: &str, why: &str) {
     let _ = writeln!(std::io::stderr(), "{name}: skipped: {why}");
 }
 

@@ -1,114 +1,97 @@
-//! Inside an engine: its device, its queue, its encoder, its buffers and textures.
+//! Backends inside of an engine: its device, its queue, its encoder, its buffers and textures.
 
-mod support;
+/// Inside of an engine on wgpu.
+mod wgpu {
+    use std::collections::HashMap;
 
-use std::sync::Arc;
+    use tressfx_backend_wgpu::{WgpuBackend, wgpu};
+    use tressfx_conformance::embed::{Embed, TEXTURE_SIZE};
+    use tressfx_core::error::Error;
+    use tressfx_core::id::{BufferId, TextureId};
 
-use tressfx_backend_wgpu::{WgpuBackend, wgpu};
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse, ComputeDesc, Record};
-use tressfx_core::pass::{Grid, Load, PassList, RasterPass};
-use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+    tressfx_conformance::embed_suite!(|| Engine::new());
 
-use support::gpu;
+    struct Engine {
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        hair: WgpuBackend,
+        buffers: HashMap<BufferId, wgpu::Buffer>,
+        textures: HashMap<TextureId, wgpu::Texture>,
+    }
 
-const INCREMENT: &str = "
-    @group(0) @binding(0) var<storage, read_write> values: array<u32>;
-    @compute @workgroup_size(4) fn increment(@builtin(global_invocation_id) i: vec3<u32>) { values[i.x] += 1u; }";
+    impl Engine {
+        fn new() -> Result<Self, Error> {
+            let opened = WgpuBackend::headless()?;
+            let (device, queue) = (opened.device().clone(), opened.queue().clone());
+            let hair = WgpuBackend::new(device.clone(), queue.clone());
+            Ok(Self { device, queue, hair, buffers: HashMap::new(), textures: HashMap::new() })
+        }
+    }
 
-fn shader() -> Arc<Shader> {
-    let source = ShaderSource { label: "test.increment", root: ("increment", INCREMENT), library: &[] };
-    Arc::new(Shader::new(&source, &Specialization::new()).unwrap())
-}
+    impl Embed for Engine {
+        type Backend = WgpuBackend;
 
-/// An engine that owns everything, and the library inside it.
-fn engine() -> Option<(wgpu::Device, wgpu::Queue, WgpuBackend)> {
-    let engine = gpu()?;
-    let (device, queue) = (engine.device().clone(), engine.queue().clone());
-    let inside = WgpuBackend::new(device.clone(), queue.clone());
-    Some((device, queue, inside))
-}
+        fn backend(&mut self) -> &mut WgpuBackend {
+            &mut self.hair
+        }
 
-fn engine_buffer(device: &wgpu::Device, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    let usage = usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-    device.create_buffer(&wgpu::BufferDescriptor { label: Some("engine"), size: 16, usage, mapped_at_creation: false })
-}
+        fn buffer(&mut self, words: [u32; 4]) -> BufferId {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            let (label, mapped_at_creation) = (Some("engine"), false);
+            let desc = wgpu::BufferDescriptor { label, size: 16, usage, mapped_at_creation };
+            let buffer = self.device.create_buffer(&desc);
+            self.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&words));
+            let id = self.hair.import_buffer(buffer.clone());
+            self.buffers.insert(id, buffer);
+            id
+        }
 
-#[test]
-fn a_list_goes_between_the_engines_own_commands() {
-    let Some((device, queue, mut hair)) = engine() else { return };
-    let engines = engine_buffer(&device, wgpu::BufferUsages::STORAGE);
-    let imported = hair.import_buffer(engines.clone());
-    let kernel = hair.create_compute(&ComputeDesc { shader: shader() }).unwrap();
-    let bindings = kernel.bind(&[("values", imported.into())]);
-    let mut list = PassList::new();
-    list.compute(&kernel, &bindings, Grid([1, 1, 1]));
-    let ticket = list.read_buffer(imported, 0, 16);
+        fn texture(&mut self) -> TextureId {
+            let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("engine"),
+                size: wgpu::Extent3d { width: TEXTURE_SIZE[0], height: TEXTURE_SIZE[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let id = self.hair.import_texture("engine", texture.clone());
+            self.textures.insert(id, texture);
+            id
+        }
 
-    queue.write_buffer(&engines, 0, bytemuck::bytes_of(&[10u32, 20, 30, 40]));
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.clear_buffer(&engines, 0, Some(4));
-    hair.record(&mut encoder, &list).unwrap();
-    encoder.clear_buffer(&engines, 12, Some(4));
-    hair.record(&mut encoder, &list.clone()).unwrap();
-    queue.submit([encoder.finish()]);
-    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
+        fn import_again(&mut self, texture: TextureId) -> TextureId {
+            self.hair.import_texture("engine", self.textures[&texture].clone())
+        }
 
-    let bytes = hair.read(ticket).expect("submitted and waited for");
-    assert_eq!(bytemuck::pod_collect_to_vec::<u8, u32>(&bytes), [2, 22, 32, 1]);
-}
+        fn begin(&mut self) -> Box<wgpu::CommandEncoder> {
+            Box::new(self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default()))
+        }
 
-#[test]
-fn an_imported_texture_is_drawn_to_and_survives_its_id() {
-    let Some((device, queue, mut hair)) = engine() else { return };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("engine"),
-        size: wgpu::Extent3d { width: 3, height: 2, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Bgra8Unorm,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let imported = hair.import_texture("engine", texture.clone());
-    assert_eq!(hair.memory().bytes, 0, "what the engine made is the engine's");
-    let mut list = PassList::new();
-    list.raster(RasterPass {
-        label: "test.clear",
-        colors: vec![(imported, Load::Clear([1.0, 0.0, 0.0, 1.0]))],
-        depth: None,
-        draws: Vec::new(),
-    });
-    let ticket = list.read_texture(imported);
-    hair.run(&list).unwrap();
-    assert_eq!(hair.read(ticket).unwrap(), [0, 0, 255, 255].repeat(6));
+        fn clear_word(&mut self, encoder: &mut wgpu::CommandEncoder, buffer: BufferId, word: u64) {
+            encoder.clear_buffer(&self.buffers[&buffer], 4 * word, Some(4));
+        }
 
-    hair.destroy(imported.into());
-    let again = hair.import_texture("engine", texture);
-    let mut list = PassList::new();
-    let ticket = list.read_texture(again);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    hair.record(&mut encoder, &list).unwrap();
-    queue.submit([encoder.finish()]);
-    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    assert_eq!(hair.read(ticket).unwrap(), [0, 0, 255, 255].repeat(6), "the texture outlived its first id");
-}
+        fn copy_texel(&mut self, encoder: &mut wgpu::CommandEncoder, texture: TextureId, buffer: BufferId) {
+            let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: None, rows_per_image: None };
+            encoder.copy_texture_to_buffer(
+                self.textures[&texture].as_image_copy(),
+                wgpu::TexelCopyBufferInfo { buffer: &self.buffers[&buffer], layout },
+                wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            );
+        }
 
-#[test]
-fn recording_alone_runs_nothing() {
-    let Some((device, queue, mut hair)) = engine() else { return };
-    let buffer =
-        hair.create_buffer(&BufferDesc { label: "test.buffer", bytes: 16, usage: BufferUse::Storage }).unwrap();
-    let kernel = hair.create_compute(&ComputeDesc { shader: shader() }).unwrap();
-    let bindings = kernel.bind(&[("values", buffer.into())]);
-    let mut list = PassList::new();
-    list.compute(&kernel, &bindings, Grid([1, 1, 1]));
-    let mut thrown_away = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    hair.record(&mut thrown_away, &list).unwrap();
-    drop(thrown_away);
-    queue.submit([]);
-    let mut list = PassList::new();
-    let ticket = list.read_buffer(buffer, 0, 16);
-    hair.run(&list).unwrap();
-    assert_eq!(hair.read(ticket).unwrap(), [0; 16]);
+        fn submit(&mut self, encoder: Box<wgpu::CommandEncoder>) {
+            self.queue.submit([encoder.finish()]);
+            self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device is there");
+        }
+
+        fn discard(&mut self, encoder: Box<wgpu::CommandEncoder>) {
+            drop(encoder);
+        }
+    }
 }

@@ -14,8 +14,6 @@ use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{Step, Units};
 use tressfx_sim::{SimParams, Stage, StepInput, SubStep};
 
-use support::rig;
-
 const GUIDES: usize = 2000;
 const VERTICES: [u32; 5] = [2, 3, 4, 5, 16];
 const LENGTH: f32 = 0.1;

@@ -36,3 +36,51 @@ mod null {
 
     tressfx_conformance::suite!(|| Ok::<_, Error>(NullBackend::default()));
 }
+
+/// On the CPU, without passes.
+#[path = "suite/copies.rs"]
+mod copies;
+
+/// The suite on [`copies`].
+mod cpu {
+    use tressfx_core::error::Error;
+
+    use crate::copies::Copies;
+
+    tressfx_conformance::suite!(|| Ok::<_, Error>(Copies::new()));
+}
+
+/// What a backend lacks is skipped by name, and the rest is asked for all the same.
+mod lacking {
+    use tressfx_conformance::suite::{CASES, Outcome, report};
+    use tressfx_core::backend::{Caps, Need};
+    use tressfx_core::error::Error;
+    use tressfx_core::null::NullBackend;
+
+    /// Needs of the cases that are skipped on a backend of these caps; none fails.
+    fn skipped(caps: &Caps) -> Vec<Need> {
+        let outcomes = report(|| Ok::<_, Error>(NullBackend::new(caps.clone())));
+        assert_eq!(outcomes.len(), CASES.len());
+        let need = |(name, outcome): (&str, Outcome)| match outcome {
+            Outcome::Passed => None,
+            Outcome::Skipped(need) => Some(need),
+            Outcome::Failed(why) => panic!("{name}: {why}"),
+        };
+        outcomes.into_iter().filter_map(need).collect()
+    }
+
+    #[test]
+    fn what_is_skipped_is_counted() {
+        let caps = Caps { read_back: false, ..Caps::webgpu_default() };
+        let without_results = skipped(&caps);
+        assert!(without_results.iter().all(|&need| need == Need::ReadBack));
+        let expected = CASES.iter().filter(|case| case.needs.contains(&Need::ReadBack)).count();
+        assert_eq!(without_results.len(), expected);
+        let without_passes = skipped(&Caps { compute: false, raster: false, ..caps });
+        for need in [Need::Compute, Need::Raster, Need::ReadBack] {
+            assert!(without_passes.contains(&need), "{need}");
+        }
+        let passed = CASES.len() - without_passes.len();
+        assert!(passed >= 10, "{passed} cases need neither passes nor results");
+    }
+}

@@ -133,6 +133,16 @@ impl VulkanBackend {
         }
     }
 
+    /// The device.
+    pub fn device(&self) -> &ash::Device {
+        &self.gpu.device
+    }
+
+    /// The family of the queue that recorded command buffers go to.
+    pub fn queue_family(&self) -> u32 {
+        self.gpu.queue_family
+    }
+
     /// How many `vkCmdPipelineBarrier2` were recorded so far.
     pub fn barriers(&self) -> u64 {
         self.barriers

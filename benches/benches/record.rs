@@ -1,0 +1,144 @@
+//! What a frame costs the CPU: writing its list, and recording the list into a command buffer. Nothing is submitted.
+
+use std::time::{Duration, Instant};
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use tressfx_backend_vulkan::VulkanBackend;
+use tressfx_backend_vulkan::ash::vk;
+use tressfx_backend_wgpu::{WgpuBackend, wgpu};
+use tressfx_core::backend::{Backend, Format, Record, TextureDesc};
+use tressfx_core::builtin::Builtin;
+use tressfx_core::pass::PassList;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, Wind};
+
+/// Few strands: the CPU does not look at them.
+const GROOM: &str = "wavy:64:16";
+const GROOMS: [u32; 3] = [1, 10, 100];
+const SIZE: [u32; 2] = [128, 72];
+
+/// So many grooms, in one simulation and one picture.
+struct Frames {
+    sim: HairSim,
+    renderer: HairRenderer,
+    sections: Vec<Section>,
+    targets: Targets,
+    view: View,
+    material: Material,
+    lights: Lights,
+}
+
+impl Frames {
+    fn new(backend: &mut dyn Backend, grooms: u32) -> Self {
+        let asset = GROOM.parse::<Builtin>().expect("a built-in groom").asset();
+        let strands = Strands::new(&asset, &StrandOptions::default()).expect("strands");
+        let desc = || SectionDesc { strands: &strands, params: SimParams::default() };
+        let sections: Vec<_> = (0..grooms).map(|_| desc()).collect();
+        let sim = HairSim::new(backend, &sections, &[]).expect("a simulation");
+        let points: Vec<_> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
+        let view = View::around(&points, SIZE);
+        let mut uploads = PassList::new();
+        let info = StrandInfo::new(&strands);
+        let section = |&buffers| Section::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
+        let sections = sim.buffers().iter().map(section).collect();
+        let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size: SIZE, format });
+        let targets = Targets {
+            color: texture("color", Format::Rgba16F).expect("a texture"),
+            depth: texture("depth", Format::Depth32F).expect("a texture"),
+        };
+        let renderer = HairRenderer::new(backend, &RenderDesc::new(SIZE, Format::Rgba16F)).expect("a renderer");
+        backend.run(&uploads).expect("the uploads run");
+        Self { sim, renderer, sections, targets, view, material: Material::default(), lights: Lights::default() }
+    }
+
+    /// One frame of 1/60 s: two sub-steps, with wind.
+    fn write(&mut self, list: &mut PassList) {
+        list.clear_commands();
+        let wind = Some(Wind::new(glam::Vec3::new(2.0, 0.0, 1.0)));
+        self.sim.step(list, &StepInput { wind, ..StepInput::new(1.0 / 60.0, Pose::IDENTITY) }).expect("a step");
+        let material = &self.material;
+        let draw = |section| SectionDraw { section, material, pose: Pose::IDENTITY };
+        let draws: Vec<_> = self.sections.iter().map(draw).collect();
+        self.renderer.draw(list, &self.view, &self.lights, &self.targets, &draws);
+    }
+
+    /// A frame in a row of frames.
+    fn steady(&mut self, backend: &mut dyn Backend) -> PassList {
+        let mut list = PassList::new();
+        for _ in 0..2 {
+            self.write(&mut list);
+            backend.run(&list).expect("the frame runs");
+        }
+        self.write(&mut list);
+        list
+    }
+}
+
+fn write(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("write the list");
+    for grooms in GROOMS {
+        let mut backend = VulkanBackend::headless().expect("Vulkan");
+        let mut frames = Frames::new(&mut backend, grooms);
+        let mut list = frames.steady(&mut backend);
+        group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| bencher.iter(|| frames.write(&mut list)));
+    }
+}
+
+fn vulkan(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("record on Vulkan");
+    for grooms in GROOMS {
+        let mut backend = VulkanBackend::headless().expect("Vulkan");
+        let list = Frames::new(&mut backend, grooms).steady(&mut backend);
+        let device = backend.device().clone();
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(backend.queue_family());
+        // SAFETY: the device lives as long as the backend; the command buffer is never submitted, and is reset only once the
+        // backend has let go of it.
+        unsafe {
+            let pool = device.create_command_pool(&info, None).expect("a pool");
+            let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
+            let mut commands = device.allocate_command_buffers(&info).expect("a command buffer")[0];
+            let mut record = || {
+                device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).expect("a reset");
+                device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default()).expect("a beginning");
+                let start = Instant::now();
+                backend.record(&mut commands, &list).expect("a recording");
+                let time = start.elapsed();
+                device.end_command_buffer(commands).expect("an end");
+                backend.wait_idle().expect("the recording is let go of");
+                time
+            };
+            group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {
+                bencher.iter_custom(|runs| (0..runs).map(|_| record()).sum::<Duration>());
+            });
+            device.destroy_command_pool(pool, None);
+        }
+    }
+}
+
+fn wgpu(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("record on wgpu");
+    for grooms in GROOMS {
+        let mut backend = WgpuBackend::headless().expect("an adapter");
+        let list = Frames::new(&mut backend, grooms).steady(&mut backend);
+        let device = backend.device().clone();
+        let mut record = || {
+            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            let start = Instant::now();
+            backend.record(&mut encoder, &list).expect("a recording");
+            // wgpu does most of its work here.
+            let commands = encoder.finish();
+            let time = start.elapsed();
+            drop(commands);
+            device.poll(wgpu::PollType::Poll).expect("a poll");
+            time
+        };
+        group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {
+            bencher.iter_custom(|runs| (0..runs).map(|_| record()).sum::<Duration>());
+        });
+    }
+}
+
+criterion_group!(benches, write, vulkan, wgpu);
+criterion_main!(benches);

@@ -1,0 +1,305 @@
+//! What a backend must keep to inside of an engine's frame. [`embed_suite!`](crate::embed_suite!) makes tests of it.
+
+use std::fmt::Display;
+use std::sync::Arc;
+
+pub use tressfx_core::backend::Need;
+use tressfx_core::backend::{Backend, BufferDesc, BufferUse, ComputeDesc, Kernel, Record};
+use tressfx_core::error::Error;
+use tressfx_core::id::{BufferId, TextureId};
+use tressfx_core::pass::{Grid, Load, PassList, RasterPass, Ticket};
+use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+
+use crate::suite::say_skipped;
+
+/// What an engine records into.
+pub type Encoder<E> = <<E as Embed>::Backend as Record>::Encoder;
+
+/// A small engine with the backend inside: it owns a device, an encoder, buffers and textures.
+pub trait Embed {
+    /// The backend.
+    type Backend: Record;
+
+    /// The backend, on the engine's device.
+    fn backend(&mut self) -> &mut Self::Backend;
+
+    /// Makes a buffer of the engine's with this content, and imports it for compute passes. The engine's own commands find
+    /// it as they left it, or as a list left it.
+    fn buffer(&mut self, words: [u32; 4]) -> BufferId;
+
+    /// Makes a texture of the engine's of [`TEXTURE_SIZE`] in `Rgba8`, that can be drawn to, sampled and copied, and imports
+    /// it; its content is of no matter. After each recording it is to be found ready to be sampled.
+    fn texture(&mut self) -> TextureId;
+
+    /// Imports the engine's texture of an id once more, in the use that the last recording left it in. The id may be
+    /// forgotten by now.
+    fn import_again(&mut self, texture: TextureId) -> TextureId;
+
+    /// An encoder of the engine's.
+    fn begin(&mut self) -> Box<Encoder<Self>>;
+
+    /// The engine's own command: makes one word of a buffer of its own zero.
+    fn clear_word(&mut self, encoder: &mut Encoder<Self>, buffer: BufferId, word: u64);
+
+    /// The engine's own commands: takes its texture from where it was promised to be found, ready to be sampled, and copies
+    /// its first texel into the first word of a buffer of its own.
+    fn copy_texel(&mut self, encoder: &mut Encoder<Self>, texture: TextureId, buffer: BufferId);
+
+    /// Submits an encoder and waits for it.
+    fn submit(&mut self, encoder: Box<Encoder<Self>>);
+
+    /// Throws an encoder away.
+    fn discard(&mut self, encoder: Box<Encoder<Self>>);
+}
+
+/// Width and height of the engine's textures: a row is as long as WebGPU asks for in a copy.
+pub const TEXTURE_SIZE: [u32; 2] = [64, 2];
+
+/// Runs a case as a test; what is not met of its needs is said.
+///
+/// Where no engine can be made and `TRESSFX_NO_GPU` says that this is known, the case is skipped as well.
+///
+/// # Panics
+/// Where the promise is broken, or no engine can be made.
+pub fn test<E: Embed, F: Display>(name: &str, needs: &[Need], make: impl Fn() -> Result<E, F>, case: fn(&mut E)) {
+    let mut engine = match make() {
+        Ok(engine) => engine,
+        Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => return say_skipped(name, &error.to_string()),
+        Err(error) => panic!("{error}"),
+    };
+    match engine.backend().caps().check("suite", needs) {
+        Err(Error::Unsupported { need, .. }) => say_skipped(name, &format!("needs {need}")),
+        _ => case(&mut engine),
+    }
+}
+
+const ADD_ONE: ShaderSource = ShaderSource {
+    label: "suite.add_one",
+    root: (
+        "root",
+        "@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+        @compute @workgroup_size(4) fn add_one(@builtin(local_invocation_index) i: u32) { values[i] += 1u; }",
+    ),
+    library: &[],
+};
+
+const LOAD: ShaderSource = ShaderSource {
+    label: "suite.load",
+    root: (
+        "root",
+        "@group(0) @binding(0) var picture: texture_2d<f32>;
+        @group(0) @binding(1) var<storage, read_write> values: array<u32>;
+        @compute @workgroup_size(4) fn load(@builtin(local_invocation_index) i: u32) {
+            values[i] = pack4x8unorm(textureLoad(picture, vec2<u32>(i, 1u), 0));
+        }",
+    ),
+    library: &[],
+};
+
+fn compute(backend: &mut dyn Backend, source: &ShaderSource) -> Kernel {
+    let shader = Arc::new(Shader::new(source, &Specialization::new()).expect("the suite's shaders are fine"));
+    backend.create_compute(&ComputeDesc { shader }).expect("a kernel")
+}
+
+fn own_buffer(backend: &mut dyn Backend) -> BufferId {
+    let desc = BufferDesc { label: "suite.buffer", bytes: 16, usage: BufferUse::Storage };
+    backend.create_buffer(&desc).expect("a buffer")
+}
+
+/// A list that adds one to each word of a buffer.
+fn adding<E: Embed>(engine: &mut E, values: BufferId) -> PassList {
+    let kernel = compute(engine.backend(), &ADD_ONE);
+    let mut list = PassList::new();
+    list.compute(&kernel, &kernel.bind(&[("values", values.into())]), Grid([1; 3]));
+    list
+}
+
+fn clearing(texture: TextureId, color: [f32; 4]) -> PassList {
+    let mut list = PassList::new();
+    let colors = vec![(texture, Load::Clear(color))];
+    list.raster(RasterPass { label: "suite.clear", colors, depth: None, draws: Vec::new() });
+    list
+}
+
+/// Records lists into one encoder, each behind what the engine does before it, and submits it.
+fn frame<E: Embed>(engine: &mut E, record: impl FnOnce(&mut E, &mut Encoder<E>)) {
+    let mut encoder = engine.begin();
+    record(engine, &mut encoder);
+    engine.submit(encoder);
+}
+
+fn record<E: Embed>(engine: &mut E, encoder: &mut Encoder<E>, list: &PassList) {
+    engine.backend().record(encoder, list).expect("the list is recorded");
+}
+
+fn words<E: Embed>(engine: &mut E, ticket: Ticket) -> Vec<u32> {
+    bytemuck::pod_collect_to_vec(&engine.backend().read(ticket).expect("submitted and waited for"))
+}
+
+/// The four words of a buffer, brought back in a list of their own.
+fn content<E: Embed>(engine: &mut E, buffer: BufferId) -> Vec<u32> {
+    let mut list = PassList::new();
+    let ticket = list.read_buffer(buffer, 0, 16);
+    frame(engine, |engine, encoder| record(engine, encoder, &list));
+    words(engine, ticket)
+}
+
+/// A list takes its place among the engine's own commands, and may be recorded twice.
+pub fn a_list_goes_between_the_engines_own_commands<E: Embed>(engine: &mut E) {
+    let values = engine.buffer([10, 20, 30, 40]);
+    let list = adding(engine, values);
+    frame(engine, |engine, encoder| {
+        engine.clear_word(encoder, values, 0);
+        record(engine, encoder, &list);
+        engine.clear_word(encoder, values, 3);
+        record(engine, encoder, &list);
+    });
+    assert_eq!(content(engine, values), [2, 22, 32, 1]);
+}
+
+/// Lists in one encoder see each other's results, and uploads of one do not reach the other.
+pub fn two_lists_share_an_encoder<E: Embed>(engine: &mut E) {
+    let values = own_buffer(engine.backend());
+    let (mut first, mut second) = (PassList::new(), PassList::new());
+    first.upload(values, 0, &[1u32, 2, 3, 4]);
+    first.commands.extend(adding(engine, values).commands);
+    let early = first.read_buffer(values, 0, 16);
+    second.upload(values, 4, &[7u32]);
+    second.commands.extend(adding(engine, values).commands);
+    let late = second.read_buffer(values, 0, 16);
+    frame(engine, |engine, encoder| {
+        record(engine, encoder, &first);
+        record(engine, encoder, &second);
+    });
+    assert_eq!(words(engine, early), [2, 3, 4, 5]);
+    assert_eq!(words(engine, late), [3, 8, 5, 6]);
+}
+
+/// What is recorded and thrown away never happens, and harms nothing that follows.
+pub fn recording_alone_runs_nothing<E: Embed>(engine: &mut E) {
+    let values = own_buffer(engine.backend());
+    // Once for real, so that the buffer is more than an id.
+    assert_eq!(content(engine, values), [0; 4]);
+    let list = adding(engine, values);
+    let mut encoder = engine.begin();
+    record(engine, &mut encoder, &list);
+    engine.discard(encoder);
+    assert_eq!(content(engine, values), [0; 4]);
+    frame(engine, |engine, encoder| record(engine, encoder, &list));
+    assert_eq!(content(engine, values), [1; 4]);
+}
+
+/// Many frames, each in an encoder of its own.
+pub fn frames_follow_each_other<E: Embed>(engine: &mut E) {
+    let values = engine.buffer([0, 1, 2, 3]);
+    let list = adding(engine, values);
+    for _ in 0..100 {
+        frame(engine, |engine, encoder| record(engine, encoder, &list));
+    }
+    assert_eq!(content(engine, values), [100, 101, 102, 103]);
+}
+
+/// The library runs lists by itself between the engine's frames.
+pub fn runs_and_frames_take_turns<E: Embed>(engine: &mut E) {
+    let values = engine.buffer([0; 4]);
+    let list = adding(engine, values);
+    for _ in 0..3 {
+        frame(engine, |engine, encoder| record(engine, encoder, &list));
+        engine.backend().run(&list).expect("the list runs");
+    }
+    assert_eq!(content(engine, values), [6; 4]);
+}
+
+/// The engine finds its texture, drawn to, as it was promised to find it.
+pub fn an_imported_texture_is_found_as_promised<E: Embed>(engine: &mut E) {
+    let (texture, texel) = (engine.texture(), engine.buffer([0; 4]));
+    for (color, expected) in [([1.0, 0.0, 0.2, 1.0], 0xff33_00ff), ([0.0, 1.0, 0.0, 0.0], 0x0000_ff00)] {
+        frame(engine, |engine, encoder| {
+            record(engine, encoder, &clearing(texture, color));
+            engine.copy_texel(encoder, texture, texel);
+        });
+        assert_eq!(content(engine, texel), [expected, 0, 0, 0]);
+    }
+}
+
+/// What one list draws into the engine's texture, another loads, after the engine used it.
+pub fn an_imported_texture_keeps_its_content<E: Embed>(engine: &mut E) {
+    let (texture, texel) = (engine.texture(), engine.buffer([0; 4]));
+    let values = own_buffer(engine.backend());
+    let kernel = compute(engine.backend(), &LOAD);
+    let mut load = PassList::new();
+    load.compute(&kernel, &kernel.bind(&[("picture", texture.into()), ("values", values.into())]), Grid([1; 3]));
+    frame(engine, |engine, encoder| {
+        record(engine, encoder, &clearing(texture, [0.2, 0.4, 0.6, 0.8]));
+        engine.copy_texel(encoder, texture, texel);
+        record(engine, encoder, &load);
+    });
+    assert_eq!(content(engine, values), [0xcc99_6633; 4]);
+    assert_eq!(content(engine, texel)[0], 0xcc99_6633);
+}
+
+/// Forgetting an import leaves the engine what is the engine's.
+pub fn an_imported_texture_outlives_its_id<E: Embed>(engine: &mut E) {
+    let texture = engine.texture();
+    frame(engine, |engine, encoder| record(engine, encoder, &clearing(texture, [1.0, 0.0, 0.0, 1.0])));
+    engine.backend().destroy(texture.into());
+    let again = engine.import_again(texture);
+    assert_ne!(texture, again);
+    let mut list = PassList::new();
+    let ticket = list.read_texture(again);
+    frame(engine, |engine, encoder| record(engine, encoder, &list));
+    assert_eq!(words(engine, ticket), vec![0xff00_00ff; (TEXTURE_SIZE[0] * TEXTURE_SIZE[1]) as usize]);
+}
+
+/// What the engine made does not count as the backend's.
+pub fn imports_do_not_count_as_memory<E: Embed>(engine: &mut E) {
+    let before = engine.backend().memory();
+    let (buffer, texture) = (engine.buffer([0; 4]), engine.texture());
+    assert_eq!(engine.backend().memory(), before);
+    engine.backend().destroy(buffer.into());
+    engine.backend().destroy(texture.into());
+    assert_eq!(engine.backend().memory(), before);
+}
+
+/// A list recorded is timed as one that is run.
+pub fn recorded_lists_are_timed<E: Embed>(engine: &mut E) {
+    let values = engine.buffer([0; 4]);
+    let mut list = adding(engine, values);
+    list.commands.extend(adding(engine, values).commands);
+    // An engine that records the next frame has submitted the last one.
+    for _ in 0..2 {
+        frame(engine, |engine, encoder| record(engine, encoder, &list));
+    }
+    let labels: Vec<_> = engine.backend().timings().iter().map(|timing| timing.label).collect();
+    let expected = if engine.backend().caps().timestamps { 2 } else { 0 };
+    assert_eq!(labels, vec!["suite.add_one"; expected]);
+}
+
+/// One `#[test]` for each promise of a backend inside of an engine.
+///
+/// Takes a closure without arguments that makes a fresh engine: `Result<impl Embed, impl Display>`.
+#[macro_export]
+macro_rules! embed_suite {
+    ($make:expr) => {
+        $crate::embed_suite! { $make;
+            a_list_goes_between_the_engines_own_commands: [Compute ReadBack];
+            two_lists_share_an_encoder: [Compute ReadBack];
+            recording_alone_runs_nothing: [Compute ReadBack];
+            frames_follow_each_other: [Compute ReadBack];
+            runs_and_frames_take_turns: [Compute ReadBack];
+            an_imported_texture_is_found_as_promised: [Raster ReadBack];
+            an_imported_texture_keeps_its_content: [Compute Raster ReadBack];
+            an_imported_texture_outlives_its_id: [Raster ReadBack];
+            imports_do_not_count_as_memory: [];
+            recorded_lists_are_timed: [Compute];
+        }
+    };
+    ($make:expr; $($case:ident: [$($need:ident)*];)*) => {$(
+        #[test]
+        #[allow(clippy::redundant_closure, reason = "a closure is what is asked for, whatever it calls")]
+        fn $case() {
+            let needs = &[$($crate::embed::Need::$need),*];
+            $crate::embed::test(stringify!($case), needs, $make, $crate::embed::$case);
+        }
+    )*};
+}
