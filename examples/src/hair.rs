@@ -83,8 +83,26 @@ impl Hair {
         Ok(())
     }
 
-    /// Frees everything.
+    /// Brings the positions of all strands back, as [`HairSim::read_positions`] does.
+    pub fn read_positions(&self, list: &mut PassList) -> Ticket {
+        self.sim.read_positions(list)[0]
+    }
+
+    /// The engine's textures have become others. Nobody has to wait for the GPU: what is freed here goes once it has finished.
+    ///
+    /// # Errors
+    /// What the backend says.
+    pub fn resize(&mut self, backend: &mut dyn Backend, view: &View, targets: Targets) -> Result<()> {
+        let Targets { color, depth } = std::mem::replace(&mut self.targets, targets);
+        [color, depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
+        self.renderer.resize(backend, view.size)?;
+        let draw = SectionDraw { section: &self.section, material: &self.material, pose: Pose::IDENTITY };
+        Ok(self.renderer.reserve(backend, view, &[draw])?)
+    }
+
+    /// Frees everything. Of the engine's textures only the ids go.
     pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.targets.color, self.targets.depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
         self.renderer.destroy(backend);
         self.section.destroy(backend);
         self.sim.destroy(backend);
