@@ -35,6 +35,8 @@ pub(crate) struct Engine {
     frames: Vec<Frame>,
     /// Frames that were begun.
     begun: usize,
+    /// The mark of the newest frame that has left the GPU.
+    finished: u64,
 }
 
 /// What a frame needs until the GPU has finished with it.
@@ -44,6 +46,8 @@ struct Frame {
     fence: vk::Fence,
     shade: Buffer,
     shade_set: vk::DescriptorSet,
+    /// What it was submitted with.
+    mark: u64,
 }
 
 /// A use of an image: what a barrier has to know of it.
@@ -102,7 +106,7 @@ impl Engine {
         let frames = (0..IN_FLIGHT).map(|_| Frame::new(&gpu, sets, &mesh_pipeline)).collect::<Result<_>>()?;
         let index_count = stage.indices.len() as u32;
         let stage = mesh_pipeline;
-        let begun = 0;
+        let (begun, finished) = (0, 0);
         Ok(Self {
             gpu,
             light,
@@ -118,6 +122,7 @@ impl Engine {
             index_count,
             frames,
             begun,
+            finished,
         })
     }
 
@@ -134,6 +139,7 @@ impl Engine {
             device.reset_command_pool(frame.pool, vk::CommandPoolResetFlags::empty())?;
             device.begin_command_buffer(frame.commands, &once)?;
         }
+        self.finished = self.finished.max(frame.mark);
         frame.shade.write(bytemuck::bytes_of(shade))?;
         Ok(frame.commands)
     }
@@ -214,14 +220,21 @@ impl Engine {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(commands, &info) };
     }
 
-    pub(crate) fn submit(&self, commands: vk::CommandBuffer) -> Result<()> {
+    /// The mark of the newest frame that has left the GPU; 0 before the first.
+    pub(crate) fn finished(&self) -> u64 {
+        self.finished
+    }
+
+    /// Submits a frame. `mark` is what [`Engine::finished`] says once it is over.
+    pub(crate) fn submit(&mut self, commands: vk::CommandBuffer, mark: u64) -> Result<()> {
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(commands)];
         let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
-        let fence = self.frames[self.begun % IN_FLIGHT].fence;
+        let frame = &mut self.frames[self.begun % IN_FLIGHT];
+        frame.mark = mark;
         // SAFETY: the command buffer was begun, and the fence was reset.
         unsafe {
             self.gpu.device.end_command_buffer(commands)?;
-            self.gpu.device.queue_submit2(self.gpu.queue, &submit, fence)?;
+            self.gpu.device.queue_submit2(self.gpu.queue, &submit, frame.fence)?;
         }
         Ok(())
     }
@@ -252,7 +265,7 @@ impl Engine {
             device.cmd_copy_image_to_buffer(commands, self.picture.image, COPIED.2, copy.buffer, &[region]);
             device.cmd_pipeline_barrier2(commands, &info);
         }
-        self.submit(commands)?;
+        self.submit(commands, self.finished)?;
         // SAFETY: this thread alone uses the queue.
         unsafe { self.gpu.device.device_wait_idle() }?;
         let picture = copy.read(bytes as usize)?;
@@ -296,7 +309,7 @@ impl Frame {
             let one = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
             let commands = gpu.device.allocate_command_buffers(&one)?[0];
             let fence = gpu.device.create_fence(&signaled, None)?;
-            Ok(Self { pool, commands, fence, shade, shade_set })
+            Ok(Self { pool, commands, fence, shade, shade_set, mark: 0 })
         }
     }
 }

@@ -32,10 +32,12 @@ fn main() -> Result<()> {
     for frame in 1..=args.frames {
         let head = head(f64::from(frame) * DT);
         let mut commands = engine.begin(&stage.shade(&head))?;
+        // The frame before the last is over, and what it used may go.
+        gpu.retire(engine.finished());
         engine.draw_stage(commands);
         gpu.record(&mut commands, hair.frame(DT, head, &stage.view, &stage.lights)?)?;
         engine.develop(commands);
-        engine.submit(commands)?;
+        engine.submit(commands, gpu.recorded())?;
         hair.observe(&mut gpu)?;
     }
 

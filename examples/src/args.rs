@@ -34,7 +34,7 @@ impl Args {
         Ok(Self {
             out: word(0, out),
             groom: Builtin::parse(&word(1, "long"))?,
-            frames: word(2, "90").parse()?,
+            frames: word(2, "45").parse()?,
             size: [width.parse()?, height.parse()?],
             validate: !switches.is_empty(),
         })

@@ -40,10 +40,11 @@ fn engine(stage: &Stage) -> Option<(Engine, VulkanBackend)> {
 
 fn frame(engine: &mut Engine, gpu: &mut VulkanBackend, hair: &mut Hair, stage: &Stage, head: Pose) {
     let mut commands = engine.begin(&stage.shade(&head)).unwrap();
+    gpu.retire(engine.finished());
     engine.draw_stage(commands);
     gpu.record(&mut commands, hair.frame(DT, head, &stage.view, &stage.lights).unwrap()).unwrap();
     engine.develop(commands);
-    engine.submit(commands).unwrap();
+    engine.submit(commands, gpu.recorded()).unwrap();
     hair.observe(gpu).unwrap();
 }
 
