@@ -1,7 +1,9 @@
 //! Recordings that the GPU may still be busy with, and what waits for it.
 //!
 //! Each recording ends by setting an event, which the CPU can ask for at any time: so nobody has to tell the backend when
-//! a frame begins, how many are in flight, or when one is over.
+//! a frame begins or how many are in flight. The event tells that bytes have come back. It does not tell that the command
+//! buffer is over, and until then Vulkan lets nobody destroy what it names: that an engine tells with
+//! [`VulkanBackend::retire`].
 
 use std::collections::VecDeque;
 
@@ -23,6 +25,7 @@ pub(crate) enum Garbage {
     Texture(Texture),
     Pipeline(Pipeline),
     Set(vk::DescriptorPool, vk::DescriptorSet),
+    Host(HostBuffer),
 }
 
 impl Gpu {
@@ -35,6 +38,7 @@ impl Gpu {
             Garbage::Set(pool, set) => unsafe {
                 let _ = self.device.free_descriptor_sets(pool, &[set]);
             },
+            Garbage::Host(buffer) => self.free_host(buffer),
         }
     }
 }
@@ -59,7 +63,9 @@ pub(crate) struct Recording {
 pub(crate) struct Frames {
     in_flight: VecDeque<Recording>,
     idle: Vec<Recording>,
-    recorded: u64,
+    pub(crate) recorded: u64,
+    /// The newest recording whose command buffer is known to be over; `None` where nobody says so.
+    retired: Option<u64>,
 }
 
 impl Recording {
@@ -128,9 +134,32 @@ impl Frames {
 }
 
 impl VulkanBackend {
-    /// Frees what finished recordings have kept. What was thrown away since is older recordings' too, so the oldest goes first.
+    /// How many lists were recorded so far: for [`retire`](Self::retire).
+    pub fn recorded(&self) -> u64 {
+        self.frames.recorded
+    }
+
+    /// Says that the command buffers of the first `recorded` recordings are over: the engine has waited for their fences.
+    ///
+    /// An engine that has waited for the fence of a frame says here what [`recorded`](Self::recorded) said when it submitted
+    /// it. From the first call on nothing is freed or used again before. An engine that never calls it has things freed once
+    /// the passes that use them have run, while the rest of its command buffer may still be pending: Vulkan forbids that, and
+    /// the validation layer says so.
+    pub fn retire(&mut self, recorded: u64) {
+        self.frames.retired = self.frames.retired.max(Some(recorded));
+        self.collect();
+    }
+
+    /// Frees what finished recordings have kept.
     pub(crate) fn collect(&mut self) {
-        while self.frames.in_flight.front().is_some_and(|recording| recording.has_run(&self.gpu)) {
+        self.collect_until(self.frames.retired.unwrap_or(u64::MAX));
+    }
+
+    /// As [`collect`](Self::collect), for recordings up to a number. What was thrown away since is older recordings' too, so
+    /// the oldest goes first.
+    pub(crate) fn collect_until(&mut self, number: u64) {
+        let is_over = |recording: &Recording| recording.number <= number && recording.has_run(&self.gpu);
+        while self.frames.in_flight.front().is_some_and(is_over) {
             let Some(mut recording) = self.frames.in_flight.pop_front() else { return };
             self.timer.finish(&self.gpu, &mut recording);
             self.frames.recycle(&self.gpu, recording);

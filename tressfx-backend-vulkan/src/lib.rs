@@ -6,10 +6,11 @@
 //!   pipelines, descriptor sets, viewport and scissor changed.
 //! * Barriers come from the hazards of `tressfx-core`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
 //!   earlier one, none before one that does not.
-//! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording they are in
-//!   the use that was promised when they were imported.
+//! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording that
+//!   touches them they are in the use that was promised when they were imported; one that does not leaves them as they are.
 //! * What is destroyed while the GPU may still use it is freed once the recordings that may name it have run, which the
-//!   backend finds out by itself.
+//!   backend finds out by itself; an engine with frames in flight tells it when their command buffers are over:
+//!   [`retire`](VulkanBackend::retire).
 //! * Nothing is put between two threads: a backend is used by one at a time, and so is its queue.
 //!
 //! It decides nothing about hair and does not know what a window is.

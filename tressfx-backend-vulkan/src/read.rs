@@ -9,6 +9,7 @@ use tressfx_core::pass::Ticket;
 
 use crate::VulkanBackend;
 use crate::device::Gpu;
+use crate::frame::Garbage;
 use crate::resource::HostBuffer;
 use crate::tables::whole;
 
@@ -77,7 +78,7 @@ impl VulkanBackend {
         }
         let PendingRead { copy, .. } = self.reads.remove(&ticket)?;
         let bytes = copy.memory.mapped_slice().map(|all| all[..copy.bytes as usize].to_vec());
-        self.gpu.free_host(copy);
+        self.throw_away(Garbage::Host(copy));
         bytes
     }
 

@@ -57,10 +57,10 @@ impl VulkanBackend {
     fn encode_all(&mut self, commands: vk::CommandBuffer, list: &PassList, recording: &mut Recording) -> Result<()> {
         self.timer.begin(&self.gpu, commands, &mut recording.queries, list.passes().count())?;
         self.zero(commands, recording);
-        for command in &list.commands {
-            self.encode(commands, command, recording)?;
-        }
+        let encoded = list.commands.iter().try_for_each(|command| self.encode(commands, command, recording));
+        // Where it failed too: what was written so far may run, and the next list must find nothing borrowed.
         self.give_back(commands);
+        encoded?;
         if list
             .commands
             .iter()

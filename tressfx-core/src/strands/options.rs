@@ -24,7 +24,7 @@ pub struct StrandOptions {
     pub shuffle: bool,
     /// Of the shuffle and of the follow strands. The same seed gives the same strands, to the bit.
     pub seed: u64,
-    /// Metres that a unit of the file stands for; `None` guesses it from the median length of the strands.
+    /// Metres that a unit of the file stands for; `None` guesses it from the size of the groom.
     pub metres_per_unit: Option<f32>,
 }
 

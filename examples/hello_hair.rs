@@ -1,0 +1,59 @@
+//! Hair in a few lines: a built-in groom, a second of simulation, a picture.
+//!
+//! `cargo run --release -p tressfx-examples --example hello_hair -- [OUT.png [GROOM]]`
+
+use anyhow::{Context, Result};
+use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::builtin::Builtin;
+use tressfx_core::pass::PassList;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Backdrop, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section, SectionDraw,
+    StrandInfo, Surface, Targets,
+};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput};
+
+const SIZE: [u32; 2] = [640, 640];
+const FORMAT: Format = Format::Rgba8Srgb;
+
+fn main() -> Result<()> {
+    let mut args = std::env::args().skip(1);
+    let out = args.next().unwrap_or_else(|| String::from("hello_hair.png"));
+    let groom = Builtin::parse(&args.next().unwrap_or_else(|| String::from("wavy")))?;
+    let strands = Strands::new(&groom.asset(), &StrandOptions::default())?;
+    let mut gpu = WgpuBackend::headless()?;
+
+    // A second of simulation. Nothing runs before the backend is given the list.
+    let mut list = PassList::new();
+    let section = SectionDesc { strands: &strands, params: SimParams::default() };
+    let mut sim = HairSim::new(&mut gpu, &[section], &groom.capsules())?;
+    for _ in 0..60 {
+        sim.step(&mut list, &StepInput::new(1.0 / 60.0, Pose::IDENTITY))?;
+    }
+
+    // What is needed to draw it.
+    let mut texture = |label, format| gpu.create_texture(&TextureDesc { label, size: SIZE, format });
+    let targets = Targets { color: texture("color", FORMAT)?, depth: texture("depth", Format::Depth32F)? };
+    let view = View::around(&strands.rest.iter().map(|vertex| vertex.truncate()).collect::<Vec<_>>(), SIZE);
+    let (lights, material) = (Lights::default(), Material::default());
+    let scene = ScenePass::new(&mut gpu, FORMAT, view.depth)?;
+    let head = SceneMesh::new(&mut gpu, &mut list, &groom.mesh())?;
+    let hair = Section::new(&mut gpu, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+    let mut renderer = HairRenderer::new(&mut gpu, &RenderDesc::new(SIZE, FORMAT))?;
+
+    // The head, and the hair over it.
+    let head = MeshDraw { mesh: &head, surface: Surface::default(), pose: Pose::IDENTITY };
+    let draws = [SectionDraw { section: &hair, material: &material, pose: sim.head_lead() }];
+    renderer.reserve(&mut gpu, &view, &draws)?;
+    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head]);
+    renderer.draw(&mut list, &view, &lights, &targets, &draws);
+    let picture = list.read_texture(targets.color);
+
+    gpu.run(&list)?;
+    let texels = gpu.read(picture).context("the list has run, so the picture is there")?;
+    image::save_buffer(&out, &texels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
+    println!("{out}: {} strands on {}", strands.strand_count(), gpu.caps().adapter);
+    Ok(())
+}

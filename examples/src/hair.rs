@@ -1,0 +1,117 @@
+//! Hair for an engine's frame: the part that names no graphics API.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use anyhow::Result;
+use glam::{Quat, Vec3};
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::builtin::Builtin;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{Counters, HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput};
+
+/// A groom that an engine simulates and draws.
+pub struct Hair {
+    sim: HairSim,
+    section: Section,
+    material: Material,
+    renderer: HairRenderer,
+    targets: Targets,
+    /// Uploads for the first frame, then empty.
+    list: PassList,
+    /// Counters of frames that the GPU may not have finished, oldest first.
+    counters: VecDeque<Ticket>,
+}
+
+impl Hair {
+    /// Makes everything that a groom needs on the GPU. `targets` are the engine's own textures, imported.
+    ///
+    /// # Errors
+    /// What the groom or the backend says.
+    pub fn new(
+        backend: &mut dyn Backend,
+        groom: &Builtin,
+        view: &View,
+        format: Format,
+        targets: Targets,
+    ) -> Result<Self> {
+        let strands = Strands::new(&groom.asset(), &StrandOptions::default())?;
+        let section = SectionDesc { strands: &strands, params: SimParams::default() };
+        let sim = HairSim::new(backend, &[section], &groom.capsules())?;
+        let mut list = PassList::new();
+        let section = Section::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+        let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size, format))?;
+        let material = Material::default();
+        renderer.reserve(
+            backend,
+            view,
+            &[SectionDraw { section: &section, material: &material, pose: Pose::IDENTITY }],
+        )?;
+        Ok(Self { sim, section, material, renderer, targets, list, counters: VecDeque::new() })
+    }
+
+    /// The passes of the next frame, which lasts `dt` seconds and at whose end the head is at `head`.
+    ///
+    /// # Errors
+    /// What the simulation does not take.
+    pub fn frame(&mut self, dt: f64, head: Pose, view: &View, lights: &Lights) -> Result<&PassList> {
+        // The first frame keeps what `new` wanted to be uploaded.
+        if self.sim.resets() > 0 {
+            self.list.clear_commands();
+        }
+        self.sim.step(&mut self.list, &StepInput::new(dt, head))?;
+        let draws = [SectionDraw { section: &self.section, material: &self.material, pose: self.sim.head_lead() }];
+        self.renderer.draw(&mut self.list, view, lights, &self.targets, &draws);
+        self.counters.push_back(self.renderer.read_counters(&mut self.list));
+        Ok(&self.list)
+    }
+
+    /// To be called after a frame was submitted: looks at what older ones counted, without waiting, and makes room where
+    /// fragments were dropped.
+    ///
+    /// # Errors
+    /// What the backend says.
+    pub fn observe(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        while let Some(&ticket) = self.counters.front() {
+            let Some(bytes) = backend.read(ticket) else { break };
+            self.counters.pop_front();
+            self.renderer.observe(backend, &Counters::from_bytes(&bytes))?;
+        }
+        Ok(())
+    }
+
+    /// Brings the positions of all strands back, as [`HairSim::read_positions`] does.
+    pub fn read_positions(&self, list: &mut PassList) -> Ticket {
+        self.sim.read_positions(list)[0]
+    }
+
+    /// The engine's textures have become others. Nobody has to wait for the GPU: what is freed here goes once it has finished.
+    ///
+    /// # Errors
+    /// What the backend says.
+    pub fn resize(&mut self, backend: &mut dyn Backend, view: &View, targets: Targets) -> Result<()> {
+        let Targets { color, depth } = std::mem::replace(&mut self.targets, targets);
+        [color, depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
+        self.renderer.resize(backend, view.size)?;
+        let draw = SectionDraw { section: &self.section, material: &self.material, pose: Pose::IDENTITY };
+        Ok(self.renderer.reserve(backend, view, &[draw])?)
+    }
+
+    /// Frees everything. Of the engine's textures only the ids go.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.targets.color, self.targets.depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
+        self.renderer.destroy(backend);
+        self.section.destroy(backend);
+        self.sim.destroy(backend);
+    }
+}
+
+/// Where the head is after `seconds`: it turns to one side and to the other about the y axis.
+pub fn head(seconds: f64) -> Pose {
+    let begun = (2.0 * seconds).min(1.0);
+    let angle = 0.5 * begun * (0.7 * TAU * seconds).sin();
+    Pose { rotation: Quat::from_rotation_y(angle as f32), translation: Vec3::ZERO }
+}

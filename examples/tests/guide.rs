@@ -1,0 +1,201 @@
+//! The porting guide, held to the code: its tables of parameters and of passes, and its excerpts.
+
+#[path = "guide/ranges.rs"]
+mod ranges;
+#[path = "guide/table.rs"]
+mod table;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::builtin::Builtin;
+use tressfx_core::null::NullBackend;
+use tressfx_core::pass::{Command, PassList};
+use tressfx_core::shader::{Shader, SlotKind};
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Backdrop, HairRenderer, Lights, MAX_LIGHTS, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
+    SectionDraw, StrandInfo, Surface, Targets,
+};
+use tressfx_sim::{ClockParams, HairSim, SectionDesc, SimParams, StepInput, Wind};
+
+use table::{GUIDE, Row, rows, words};
+
+/// The row of a name.
+fn row<'a>(rows: &'a [Row], name: &str) -> &'a Row {
+    rows.iter().find(|row| words(&row[0]).contains(&name.to_owned())).unwrap_or_else(|| panic!("`{name}` has no row"))
+}
+
+#[test]
+fn the_tables_of_parameters_have_the_defaults_of_the_code() {
+    let text = include_str!("../../docs/parameters.toml");
+    let defaults: toml::Table = text.parse().unwrap();
+    for (table, heading) in [("clock", "Clock"), ("sim", "Simulation"), ("material", "Material")] {
+        let rows = rows(heading);
+        let mut expected = BTreeMap::new();
+        for (name, value) in defaults[table].as_table().unwrap() {
+            match value {
+                toml::Value::Table(parts) => {
+                    expected.extend(parts.iter().map(|(part, value)| (format!("{name}.{part}"), value.clone())));
+                }
+                value => drop(expected.insert(name.clone(), value.clone())),
+            }
+        }
+        for (name, value) in &expected {
+            let said: toml::Table = format!("said = {}", words(&row(&rows, name)[2])[0]).parse().unwrap();
+            assert_eq!(&said["said"], value, "{table}.{name}");
+        }
+        // What is left is none by default, and commented out in the file.
+        let names: BTreeSet<_> = rows.iter().flat_map(|row| words(&row[0])).collect();
+        let left = names.into_iter().filter(|name| !expected.contains_key(name));
+        let none: Vec<_> = left.collect();
+        let all_none =
+            none.iter().all(|name| row(&rows, name)[2].starts_with("`None`") && text.contains(&format!("# {name} =")));
+        assert!(all_none, "{table}: {none:?}");
+    }
+}
+
+#[test]
+fn what_has_no_file_has_its_defaults_too() {
+    let StrandOptions { vertices, follows, follow_radius, tip_separation, shuffle, seed, metres_per_unit } =
+        StrandOptions::default();
+    let Wind { velocity, half_angle, gust_period } = Wind::default();
+    let RenderDesc { size: _, target: _, k, max_node_bytes } = RenderDesc::new([1, 1], Format::Rgba16F);
+    let Lights { sky, ground, lights: _ } = Lights::default();
+    let tables: [(&str, &[(&str, String)]); 4] = [
+        (
+            "Strands",
+            &[
+                ("vertices", format!("{vertices:?}")),
+                ("follows", format!("{follows:?}")),
+                ("follow_radius", format!("{follow_radius:?}")),
+                ("tip_separation", format!("{tip_separation:?}")),
+                ("shuffle", format!("{shuffle:?}")),
+                ("seed", format!("{seed:?}")),
+                ("metres_per_unit", format!("{metres_per_unit:?}")),
+            ],
+        ),
+        (
+            "Wind",
+            &[
+                ("velocity", format!("{:?}", velocity.to_array())),
+                ("half_angle", format!("{half_angle:?}")),
+                ("gust_period", format!("{gust_period:?}")),
+            ],
+        ),
+        ("Renderer", &[("k", k.to_string()), ("max_node_bytes", max_node_bytes.to_string())]),
+        ("Light", &[("sky", format!("{:?}", sky.to_array())), ("ground", format!("{:?}", ground.to_array()))]),
+    ];
+    for (heading, expected) in tables {
+        let rows = rows(heading);
+        for (name, default) in expected {
+            assert_eq!(words(&row(&rows, name)[2])[0], *default, "{heading}: {name}");
+        }
+    }
+    assert!(GUIDE.contains(&format!("At most {MAX_LIGHTS} lights")));
+}
+
+#[test]
+fn ranges_are_those_that_the_code_refuses_beyond() {
+    ranges::hold("Clock", "", |table| table.try_into().ok().map(|params: ClockParams| params.validate().is_ok()));
+    ranges::hold("Simulation", "", |table| table.try_into().ok().map(|params: SimParams| params.validate().is_ok()));
+    ranges::hold("Wind", "", |table| table.try_into().ok().map(|wind: Wind| wind.validate().is_ok()));
+    let material = "primary = { strength = 0.5, exponent = 9.0 }\nsecondary = { strength = 0.5, exponent = 9.0 }\n";
+    ranges::hold("Material", material, |table| {
+        table.try_into().ok().map(|material: Material| material.validate().is_ok())
+    });
+}
+
+/// Lists with every pass that there is.
+fn everything() -> PassList {
+    let mut backend = NullBackend::default();
+    let groom = Builtin::parse("curly:8:6").unwrap();
+    let strands = Strands::new(&groom.asset(), &StrandOptions { follows: Some(2), ..Default::default() }).unwrap();
+    let section = SectionDesc { strands: &strands, params: SimParams::default() };
+    let mut sim = HairSim::new(&mut backend, &[section], &groom.capsules()).unwrap();
+    let mut list = PassList::new();
+    let turned = Pose { translation: glam::Vec3::X * 0.01, ..Pose::IDENTITY };
+    for head in [Pose::IDENTITY, turned] {
+        sim.step(&mut list, &StepInput::new(1.0 / 60.0, head)).unwrap();
+    }
+    let size = [64, 64];
+    let view = View::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size);
+    let mut texture = |format| backend.create_texture(&TextureDesc { label: "target", size, format }).unwrap();
+    let targets = Targets { color: texture(Format::Rgba16F), depth: texture(Format::Depth32F) };
+    let scene = ScenePass::new(&mut backend, Format::Rgba16F, view.depth).unwrap();
+    let mesh = SceneMesh::new(&mut backend, &mut list, &groom.mesh()).unwrap();
+    let mesh = MeshDraw { mesh: &mesh, surface: Surface::default(), pose: Pose::IDENTITY };
+    scene.draw(&mut list, &view, &Lights::default(), &targets, &Backdrop::default(), &[mesh]);
+    let section = Section::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
+    let renderer = HairRenderer::new(&mut backend, &RenderDesc::new(size, Format::Rgba16F)).unwrap();
+    let draw = SectionDraw { section: &section, material: &Material::default(), pose: sim.head_lead() };
+    renderer.draw(&mut list, &view, &Lights::default(), &targets, &[draw]);
+    list
+}
+
+#[test]
+fn the_table_of_passes_has_every_pass_with_what_it_binds() {
+    let mut passes: BTreeMap<&str, [BTreeSet<String>; 2]> = BTreeMap::new();
+    let list = everything();
+    for (label, command) in list.passes() {
+        let shaders: Vec<&Shader> = match command {
+            Command::Compute(pass) => vec![&pass.kernel.shader],
+            Command::Raster(pass) => pass.draws.iter().map(|draw| &*draw.kernel.shader).collect(),
+            _ => unreachable!("only passes have labels"),
+        };
+        let [reads, writes] = passes.entry(label).or_default();
+        for slot in shaders.iter().flat_map(|shader| &shader.slots) {
+            let side = if slot.kind == SlotKind::ReadWrite { &mut *writes } else { &mut *reads };
+            side.insert(slot.name.clone());
+        }
+    }
+    let said: BTreeMap<_, _> = rows("The passes")
+        .iter()
+        .map(|row| {
+            (words(&row[0])[0].clone(), [1, 2].map(|cell| words(&row[cell]).into_iter().collect::<BTreeSet<_>>()))
+        })
+        .collect();
+    let found: BTreeMap<_, _> = passes.into_iter().map(|(label, sides)| (label.to_owned(), sides)).collect();
+    assert_eq!(said, found);
+}
+
+#[test]
+fn excerpts_are_from_the_examples() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut sources = String::new();
+    for name in ["src", "embed_wgpu", "embed_vulkan", "my_backend", "tests"] {
+        for entry in fs::read_dir(folder.join(name)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with("guide.rs") {
+                sources += &fs::read_to_string(path).unwrap();
+            }
+        }
+    }
+    let lines: BTreeSet<&str> = sources.lines().map(str::trim).collect();
+    let excerpts: Vec<&str> =
+        GUIDE.split("```rust,ignore\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(excerpts.len() >= 5, "{} excerpts", excerpts.len());
+    for line in excerpts.iter().flat_map(|excerpt| excerpt.lines()) {
+        assert!(lines.contains(line.trim()), "no example has: {line}");
+    }
+}
+
+#[test]
+fn files_that_are_linked_are_there() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let links = GUIDE.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    for link in links.filter(|link| !link.starts_with('#')) {
+        assert!(docs.join(link).exists(), "{link}");
+    }
+    let headings: BTreeSet<String> = GUIDE
+        .lines()
+        .filter_map(|line| line.strip_prefix('#'))
+        .map(|line| line.trim_start_matches('#').trim().to_lowercase().replace(' ', "-"))
+        .collect();
+    for anchor in GUIDE.split("](#").skip(1).filter_map(|rest| rest.split(')').next()) {
+        assert!(headings.contains(anchor), "#{anchor}");
+    }
+}
