@@ -4,7 +4,7 @@
 // sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent (dynamic
 // follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
 
-import package::constants::{GUIDES, STRANDS, SWEEPS, VERTICES};
+import package::constants::{CHUNK, GUIDES, STRANDS, SWEEPS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
 import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
@@ -19,9 +19,9 @@ import package::vector::{NO_LENGTH, direction_or, is_finite, rotate};
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
 const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
-/// Vertices that are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
-/// the stores of the vertices before it.
-const CHUNK: u32 = 8u;
+// `CHUNK` vertices are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
+// the stores of the vertices before it.
+
 /// Wind on a vertex needs the next one too.
 @if(wind) const LOADED: u32 = CHUNK + 1u;
 @if(!wind) const LOADED: u32 = CHUNK;

@@ -15,6 +15,14 @@ const SOURCE: ShaderSource = ShaderSource {
     library: LIBRARY,
 };
 
+/// Vertices that are loaded at once, at most: more do not stay in registers.
+const LARGEST_CHUNK: u32 = 5;
+
+/// How many vertices are loaded at once, so that a walk of so many steps ends with little or nothing of its last chunk left.
+fn chunk(steps: u32) -> u32 {
+    steps.div_ceil(steps.div_ceil(LARGEST_CHUNK))
+}
+
 pub(crate) fn length(
     backend: &mut dyn Backend,
     buffers: &SectionBuffers,
@@ -25,6 +33,7 @@ pub(crate) fn length(
     let shape = &buffers.strands.shape;
     let specialization = counts(shape)
         .constant("SWEEPS", params.length_iterations)
+        .constant("CHUNK", chunk(shape.vertices + params.length_iterations))
         .feature("wind", wind)
         .feature("pinned_tips", buffers.pinned_tips);
     let resources = [
