@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 
 use ash::vk;
 use tressfx_core::error::Result;
+use tressfx_core::hazards::Hazards;
 use tressfx_core::id::Resource;
 
 use crate::VulkanBackend;
@@ -15,6 +16,9 @@ use crate::error::error;
 use crate::pipeline::Pipeline;
 use crate::resource::{Buffer, HostBuffer, Texture};
 use crate::timer::Queries;
+
+/// An upload buffer of so many bytes is kept for the next list. A larger one is for a groom on its way, which comes once.
+const KEPT_BYTES: u64 = 1 << 20;
 
 /// What is freed once the GPU cannot use it any more.
 #[derive(Debug)]
@@ -46,11 +50,13 @@ pub(crate) struct Recording {
     pub(crate) number: u64,
     /// Set once it has run.
     event: vk::Event,
-    /// The bytes of its uploads; kept for the next list.
+    /// The bytes of its uploads; kept for the next list, if they are few.
     pub(crate) uploads: Option<HostBuffer>,
     pub(crate) queries: Queries,
     /// What it fills with zeros before their first use.
     pub(crate) zeroed: Vec<Resource>,
+    /// The state of everything before it: what holds again where it never runs.
+    pub(crate) before: Hazards,
     garbage: Vec<Garbage>,
 }
 
@@ -68,8 +74,15 @@ impl Recording {
         let event = unsafe { gpu.device.create_event(&vk::EventCreateInfo::default(), None) };
         let event = event.map_err(|code| error(code, "hair.recording", 0))?;
         gpu.name(event, "hair.recording");
-        let queries = Queries::default();
-        Ok(Self { number: 0, event, uploads: None, queries, zeroed: Vec::new(), garbage: Vec::new() })
+        Ok(Self {
+            number: 0,
+            event,
+            uploads: None,
+            queries: Queries::default(),
+            zeroed: Vec::new(),
+            before: Hazards::default(),
+            garbage: Vec::new(),
+        })
     }
 
     /// Writes what tells the CPU that everything before it has run.
@@ -113,10 +126,20 @@ impl Frames {
             .is_none_or(|recording| recording.has_run(gpu))
     }
 
+    /// Forgets a destroyed resource.
+    pub(crate) fn forget(&mut self, resource: Resource) {
+        for recording in &mut self.in_flight {
+            recording.zeroed.retain(|&other| other != resource);
+            recording.before.forget(resource);
+        }
+    }
+
     /// Makes a recording ready for its next use.
     fn recycle(&mut self, gpu: &Gpu, mut recording: Recording) {
         recording.garbage.drain(..).for_each(|garbage| gpu.destroy(garbage));
         recording.zeroed.clear();
+        let large = recording.uploads.take_if(|uploads| uploads.bytes > KEPT_BYTES);
+        large.into_iter().for_each(|uploads| gpu.free_host(uploads));
         // SAFETY: it has run, so nothing sets the event any more.
         let _ = unsafe { gpu.device.reset_event(recording.event) };
         self.idle.push(recording);
@@ -147,10 +170,10 @@ impl VulkanBackend {
     }
 
     /// Waits until the device has finished with everything. What was recorded before and never submitted must not be submitted
-    /// any more: its memory is taken back.
+    /// any more: its memory is taken back, and everything counts as it was before.
     ///
-    /// An engine that records lists and throws its command buffer away calls this, or the memory of those lists is held
-    /// until the backend goes. No other thread may submit meanwhile.
+    /// An engine that records lists and throws its command buffer away calls this before it records the next one. No other
+    /// thread may submit meanwhile.
     ///
     /// # Errors
     /// If the device is lost.
@@ -159,6 +182,10 @@ impl VulkanBackend {
         let waited = unsafe { self.gpu.device.device_wait_idle() };
         self.noted(waited.map_err(|code| error(code, "wait", 0)))?;
         self.collect();
+        let never_ran = self.frames.in_flight.iter_mut().find(|recording| !recording.has_run(&self.gpu));
+        if let Some(first) = never_ran {
+            self.hazards = std::mem::take(&mut first.before);
+        }
         while let Some(mut recording) = self.frames.in_flight.pop_front() {
             if recording.has_run(&self.gpu) {
                 self.timer.finish(&self.gpu, &mut recording);

@@ -21,6 +21,7 @@ impl Record for VulkanBackend {
         self.check_lost()?;
         self.collect();
         let mut recording = self.frames.begin(&self.gpu)?;
+        recording.before = self.hazards.clone();
         let recorded =
             self.prepare(list, &mut recording).and_then(|()| self.encode_all(*encoder, list, &mut recording));
         // Even where something failed: what was written so far may run.
@@ -57,9 +58,8 @@ impl VulkanBackend {
     fn encode_all(&mut self, commands: vk::CommandBuffer, list: &PassList, recording: &mut Recording) -> Result<()> {
         self.timer.begin(&self.gpu, commands, &mut recording.queries, list.passes().count())?;
         self.zero(commands, recording);
-        for command in &list.commands {
-            self.encode(commands, command, recording)?;
-        }
+        let encoded = list.commands.iter().try_for_each(|command| self.encode(commands, command, recording));
+        // Even where something failed: the engine goes on with what is its own.
         self.give_back(commands);
         if list
             .commands
@@ -70,7 +70,7 @@ impl VulkanBackend {
             self.barrier.buffer(copied, (vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ));
             self.write_barrier(commands);
         }
-        Ok(())
+        encoded
     }
 
     fn encode(&mut self, commands: vk::CommandBuffer, command: &Command, recording: &mut Recording) -> Result<()> {
