@@ -17,6 +17,10 @@ use crate::pipeline::Pipeline;
 use crate::resource::{Buffer, HostBuffer, Texture};
 use crate::timer::Queries;
 
+/// So many of the newest recordings keep what they need even if they have run: the validation layer takes it for in use until
+/// the engine has waited for its command buffer, which by then it has.
+const YOUNG: usize = 8;
+
 /// An upload buffer of so many bytes is kept for the next list. A larger one is for a groom on its way, which comes once.
 const KEPT_BYTES: u64 = 1 << 20;
 
@@ -151,12 +155,25 @@ impl Frames {
 }
 
 impl VulkanBackend {
-    /// Frees what finished recordings have kept. What was thrown away since is older recordings' too, so the oldest goes first.
+    /// Reads the times of finished recordings, and frees what all but the newest of them have kept.
     pub(crate) fn collect(&mut self) {
-        while self.frames.in_flight.front().is_some_and(|recording| recording.has_run(&self.gpu)) {
-            let Some(mut recording) = self.frames.in_flight.pop_front() else { return };
-            self.timer.finish(&self.gpu, &mut recording);
-            self.frames.recycle(&self.gpu, recording);
+        self.collect_all_but(YOUNG);
+    }
+
+    /// As [`collect`](Self::collect). What was thrown away since is older recordings' too, so the oldest goes first.
+    pub(crate) fn collect_all_but(&mut self, newest: usize) {
+        let frames = &mut self.frames;
+        let mut old = frames.in_flight.len().saturating_sub(newest);
+        for (index, recording) in frames.in_flight.iter_mut().enumerate() {
+            if !recording.has_run(&self.gpu) {
+                old = old.min(index);
+                break;
+            }
+            self.timer.finish(&self.gpu, recording);
+        }
+        for _ in 0..old {
+            let Some(recording) = frames.in_flight.pop_front() else { return };
+            frames.recycle(&self.gpu, recording);
         }
     }
 
@@ -181,7 +198,7 @@ impl VulkanBackend {
         // SAFETY: the device is alive, and no queue of it is in use, as promised above.
         let waited = unsafe { self.gpu.device.device_wait_idle() };
         self.noted(waited.map_err(|code| error(code, "wait", 0)))?;
-        self.collect();
+        self.collect_all_but(0);
         let never_ran = self.frames.in_flight.iter_mut().find(|recording| !recording.has_run(&self.gpu));
         if let Some(first) = never_ran {
             self.hazards = std::mem::take(&mut first.before);

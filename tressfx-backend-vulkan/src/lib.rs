@@ -8,8 +8,8 @@
 //!   earlier one, none before one that does not.
 //! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording they are in
 //!   the use that was promised when they were imported, if it named them; else they are as it found them.
-//! * What is destroyed while the GPU may still use it is freed once the recordings that may name it have run, which the
-//!   backend finds out by itself.
+//! * What is destroyed while the GPU may still use it is freed some recordings after those that may name it have run, which
+//!   the backend finds out by itself; all of it is freed by `wait_idle`.
 //! * Nothing is put between two threads: a backend is used by one at a time, and so is its queue.
 //!
 //! It decides nothing about hair and does not know what a window is.

@@ -84,7 +84,7 @@ impl VulkanBackend {
         let ran = runner.submit_and_wait(&self.gpu).map_err(|code| error(code, "run", 0));
         self.runner = Some(runner);
         self.noted(recorded.and(ran))?;
-        self.collect();
+        self.collect_all_but(0);
         self.heard()
     }
 }
