@@ -10,6 +10,8 @@ use tressfx_core::id::{BufferId, TextureId};
 
 #[path = "engine.rs"]
 mod engine;
+#[path = "promises.rs"]
+mod promises;
 
 use engine::{Engine, whole};
 
