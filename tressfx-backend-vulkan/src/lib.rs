@@ -150,10 +150,10 @@ impl VulkanBackend {
         self.barriers
     }
 
-    /// Leaves all barriers out, so that a test can see whether anybody notices.
+    /// Leaves all barriers out from now on, or none again, so that a test can see whether anybody notices.
     #[doc(hidden)]
-    pub fn leave_out_barriers(&mut self) {
-        self.barrier.leave_out();
+    pub fn leave_out_barriers(&mut self, left_out: bool) {
+        self.barrier.leave_out(left_out);
     }
 
     /// Writes the pipeline cache to its file, as dropping the backend does.
