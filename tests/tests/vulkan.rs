@@ -47,7 +47,7 @@ fn the_validation_layer_has_nothing_to_say_about_600_frames() {
 fn without_barriers_the_validation_layer_says_so_and_names_the_pass() {
     let Some(mut backend) = vulkan(&watched()) else { return };
     let scene = Scene::builtin("wavy:120:16", SIZE);
-    backend.leave_out_barriers();
+    backend.leave_out_barriers(true);
     let buffer = BufferDesc { label: "test.source", bytes: 256, usage: BufferUse::Storage };
     let [source, middle] = [0, 1].map(|_| backend.create_buffer(&buffer).unwrap());
     let mut list = PassList::new();

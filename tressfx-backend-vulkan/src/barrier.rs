@@ -61,9 +61,9 @@ impl Barrier {
         );
     }
 
-    /// Writes none from now on.
-    pub(crate) fn leave_out(&mut self) {
-        self.left_out = true;
+    /// Writes none from now on, or all again.
+    pub(crate) fn leave_out(&mut self, left_out: bool) {
+        *self = Self { left_out, ..Self::default() };
     }
 
     /// Writes it, if there is anything to wait for, and empties it. Says whether it was written.

@@ -9,6 +9,7 @@ use std::collections::VecDeque;
 
 use ash::vk;
 use tressfx_core::error::Result;
+use tressfx_core::hazards::Hazards;
 use tressfx_core::id::Resource;
 
 use crate::VulkanBackend;
@@ -17,6 +18,9 @@ use crate::error::error;
 use crate::pipeline::Pipeline;
 use crate::resource::{Buffer, HostBuffer, Texture};
 use crate::timer::Queries;
+
+/// An upload buffer of so many bytes is kept for the next list. A larger one is for a groom on its way, which comes once.
+const KEPT_BYTES: u64 = 1 << 20;
 
 /// What is freed once the GPU cannot use it any more.
 #[derive(Debug)]
@@ -50,11 +54,13 @@ pub(crate) struct Recording {
     pub(crate) number: u64,
     /// Set once it has run.
     event: vk::Event,
-    /// The bytes of its uploads; kept for the next list.
+    /// The bytes of its uploads; kept for the next list, if they are few.
     pub(crate) uploads: Option<HostBuffer>,
     pub(crate) queries: Queries,
     /// What it fills with zeros before their first use.
     pub(crate) zeroed: Vec<Resource>,
+    /// The state of everything before it: what holds again where it never runs.
+    pub(crate) before: Hazards,
     garbage: Vec<Garbage>,
 }
 
@@ -64,8 +70,8 @@ pub(crate) struct Frames {
     in_flight: VecDeque<Recording>,
     idle: Vec<Recording>,
     pub(crate) recorded: u64,
-    /// The newest recording whose command buffer is known to be over; `None` where nobody says so.
-    retired: Option<u64>,
+    /// Command buffers of the recordings up to this number are known to be over.
+    retired: u64,
 }
 
 impl Recording {
@@ -74,8 +80,15 @@ impl Recording {
         let event = unsafe { gpu.device.create_event(&vk::EventCreateInfo::default(), None) };
         let event = event.map_err(|code| error(code, "hair.recording", 0))?;
         gpu.name(event, "hair.recording");
-        let queries = Queries::default();
-        Ok(Self { number: 0, event, uploads: None, queries, zeroed: Vec::new(), garbage: Vec::new() })
+        Ok(Self {
+            number: 0,
+            event,
+            uploads: None,
+            queries: Queries::default(),
+            zeroed: Vec::new(),
+            before: Hazards::default(),
+            garbage: Vec::new(),
+        })
     }
 
     /// Writes what tells the CPU that everything before it has run.
@@ -119,10 +132,20 @@ impl Frames {
             .is_none_or(|recording| recording.has_run(gpu))
     }
 
+    /// Forgets a destroyed resource.
+    pub(crate) fn forget(&mut self, resource: Resource) {
+        for recording in &mut self.in_flight {
+            recording.zeroed.retain(|&other| other != resource);
+            recording.before.forget(resource);
+        }
+    }
+
     /// Makes a recording ready for its next use.
     fn recycle(&mut self, gpu: &Gpu, mut recording: Recording) {
         recording.garbage.drain(..).for_each(|garbage| gpu.destroy(garbage));
         recording.zeroed.clear();
+        let large = recording.uploads.take_if(|uploads| uploads.bytes > KEPT_BYTES);
+        large.into_iter().for_each(|uploads| gpu.free_host(uploads));
         // SAFETY: it has run, so nothing sets the event any more.
         let _ = unsafe { gpu.device.reset_event(recording.event) };
         self.idle.push(recording);
@@ -142,27 +165,32 @@ impl VulkanBackend {
     /// Says that the command buffers of the first `recorded` recordings are over: the engine has waited for their fences.
     ///
     /// An engine that has waited for the fence of a frame says here what [`recorded`](Self::recorded) said when it submitted
-    /// it. From the first call on nothing is freed or used again before. An engine that never calls it has things freed once
-    /// the passes that use them have run, while the rest of its command buffer may still be pending: Vulkan forbids that, and
-    /// the validation layer says so.
+    /// it. What those recordings have kept, and what was destroyed since, is freed now and no sooner.
     pub fn retire(&mut self, recorded: u64) {
-        self.frames.retired = self.frames.retired.max(Some(recorded));
+        self.frames.retired = self.frames.retired.max(recorded);
         self.collect();
     }
 
-    /// Frees what finished recordings have kept.
+    /// Reads the times of finished recordings, and frees what those have kept whose command buffers are over.
     pub(crate) fn collect(&mut self) {
-        self.collect_until(self.frames.retired.unwrap_or(u64::MAX));
+        self.collect_until(self.frames.retired);
     }
 
     /// As [`collect`](Self::collect), for recordings up to a number. What was thrown away since is older recordings' too, so
     /// the oldest goes first.
     pub(crate) fn collect_until(&mut self, number: u64) {
-        let is_over = |recording: &Recording| recording.number <= number && recording.has_run(&self.gpu);
-        while self.frames.in_flight.front().is_some_and(is_over) {
-            let Some(mut recording) = self.frames.in_flight.pop_front() else { return };
-            self.timer.finish(&self.gpu, &mut recording);
-            self.frames.recycle(&self.gpu, recording);
+        let frames = &mut self.frames;
+        let mut over = 0;
+        for recording in &mut frames.in_flight {
+            if !recording.has_run(&self.gpu) {
+                break;
+            }
+            self.timer.finish(&self.gpu, recording);
+            over += usize::from(recording.number <= number);
+        }
+        for _ in 0..over {
+            let Some(recording) = frames.in_flight.pop_front() else { return };
+            frames.recycle(&self.gpu, recording);
         }
     }
 
@@ -176,10 +204,10 @@ impl VulkanBackend {
     }
 
     /// Waits until the device has finished with everything. What was recorded before and never submitted must not be submitted
-    /// any more: its memory is taken back.
+    /// any more: its memory is taken back, and everything counts as it was before.
     ///
-    /// An engine that records lists and throws its command buffer away calls this, or the memory of those lists is held
-    /// until the backend goes. No other thread may submit meanwhile.
+    /// An engine that records lists and throws its command buffer away calls this before it records the next one. No other
+    /// thread may submit meanwhile.
     ///
     /// # Errors
     /// If the device is lost.
@@ -187,7 +215,11 @@ impl VulkanBackend {
         // SAFETY: the device is alive, and no queue of it is in use, as promised above.
         let waited = unsafe { self.gpu.device.device_wait_idle() };
         self.noted(waited.map_err(|code| error(code, "wait", 0)))?;
-        self.collect();
+        self.collect_until(u64::MAX);
+        let never_ran = self.frames.in_flight.iter_mut().find(|recording| !recording.has_run(&self.gpu));
+        if let Some(first) = never_ran {
+            self.hazards = std::mem::take(&mut first.before);
+        }
         while let Some(mut recording) = self.frames.in_flight.pop_front() {
             if recording.has_run(&self.gpu) {
                 self.timer.finish(&self.gpu, &mut recording);

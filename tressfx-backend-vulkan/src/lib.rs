@@ -6,11 +6,11 @@
 //!   pipelines, descriptor sets, viewport and scissor changed.
 //! * Barriers come from the hazards of `tressfx-core`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
 //!   earlier one, none before one that does not.
-//! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording that
-//!   touches them they are in the use that was promised when they were imported; one that does not leaves them as they are.
-//! * What is destroyed while the GPU may still use it is freed once the recordings that may name it have run, which the
-//!   backend finds out by itself; an engine with frames in flight tells it when their command buffers are over:
-//!   [`retire`](VulkanBackend::retire).
+//! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording they are in
+//!   the use that was promised when they were imported, if it named them; else they are as it found them.
+//! * What is destroyed while the GPU may still use it is freed once the engine says that the command buffers that may name it
+//!   are over: [`retire`](VulkanBackend::retire), once a frame. [`run`](Backend::run) and
+//!   [`wait_idle`](VulkanBackend::wait_idle) know by themselves.
 //! * Nothing is put between two threads: a backend is used by one at a time, and so is its queue.
 //!
 //! It decides nothing about hair and does not know what a window is.
@@ -84,7 +84,9 @@ impl VulkanBackend {
     /// * Instance, adapter, device, queue and allocator belong together and outlive the backend; the device is of Vulkan 1.3,
     ///   with `synchronization2`, `dynamicRendering` and what `enabled` says.
     /// * Command buffers given to [`record`](tressfx_core::backend::Record::record) are of this device and the queue's family, are being recorded,
-    ///   outside of a render pass, and are submitted to the queue in the order in which they were recorded, once or never.
+    ///   outside of a render pass, and are submitted to the queue once, in the order in which they were recorded, among what
+    ///   [`run`](Backend::run) submits. Where one is never submitted, [`wait_idle`](Self::wait_idle) is called before the next
+    ///   is recorded.
     /// * The queue is used by one thread at a time: [`run`](Backend::run) submits to it.
     /// * When the backend is dropped, everything that was recorded has run or never will.
     pub unsafe fn new(desc: VulkanDesc) -> Self {
@@ -149,10 +151,10 @@ impl VulkanBackend {
         self.barriers
     }
 
-    /// Leaves all barriers out, so that a test can see whether anybody notices.
+    /// Leaves all barriers out from now on, or none again, so that a test can see whether anybody notices.
     #[doc(hidden)]
-    pub fn leave_out_barriers(&mut self) {
-        self.barrier.leave_out();
+    pub fn leave_out_barriers(&mut self, left_out: bool) {
+        self.barrier.leave_out(left_out);
     }
 
     /// Writes the pipeline cache to its file, as dropping the backend does.

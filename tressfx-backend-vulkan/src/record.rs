@@ -21,6 +21,7 @@ impl Record for VulkanBackend {
         self.check_lost()?;
         self.collect();
         let mut recording = self.frames.begin(&self.gpu)?;
+        recording.before = self.hazards.clone();
         let recorded =
             self.prepare(list, &mut recording).and_then(|()| self.encode_all(*encoder, list, &mut recording));
         // Even where something failed: what was written so far may run.
@@ -60,7 +61,6 @@ impl VulkanBackend {
         let encoded = list.commands.iter().try_for_each(|command| self.encode(commands, command, recording));
         // Where it failed too: what was written so far may run, and the next list must find nothing borrowed.
         self.give_back(commands);
-        encoded?;
         if list
             .commands
             .iter()
@@ -70,7 +70,7 @@ impl VulkanBackend {
             self.barrier.buffer(copied, (vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ));
             self.write_barrier(commands);
         }
-        Ok(())
+        encoded
     }
 
     fn encode(&mut self, commands: vk::CommandBuffer, command: &Command, recording: &mut Recording) -> Result<()> {

@@ -322,6 +322,7 @@ impl VulkanBackend {
         };
         self.memory.remove(bytes);
         self.hazards.forget(resource);
+        self.frames.forget(resource);
         self.not_zeroed.retain(|&other| other != resource);
         self.forget_sets(|_, bindings| bindings.resources().contains(&resource));
         self.throw_away(garbage);

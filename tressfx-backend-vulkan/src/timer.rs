@@ -20,7 +20,7 @@ const COUNTED: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFlags
 pub(crate) struct Timer {
     /// Nanoseconds of one tick; `None` where the device cannot time.
     period: Option<f64>,
-    /// The newest finished list.
+    /// The newest finished list that has passes.
     newest: Vec<Timing>,
 }
 
@@ -98,10 +98,13 @@ impl Timer {
         }
     }
 
-    /// Reads the queries of a recording that has run.
+    /// Reads the queries of a recording that has run. One without passes leaves what is known of the one before it.
     pub(crate) fn finish(&mut self, gpu: &Gpu, recording: &mut Recording) {
         let Some(period) = self.period else { return };
         let mut passes = std::mem::take(&mut recording.queries.passes);
+        if passes.is_empty() {
+            return;
+        }
         let Some(ticks) = results::<2>(gpu, recording.queries.timestamps, 2, passes.len()) else { return };
         let counts = gpu.enabled.statistics.then(|| results::<3>(gpu, recording.queries.statistics, 1, passes.len()));
         let first = ticks.first().map_or(0, |ends| ends[0]);
@@ -157,9 +160,6 @@ impl Queries {
 /// `N` numbers a pass, from `queries` queries each; `None` if they are not there.
 fn results<const N: usize>(gpu: &Gpu, pool: vk::QueryPool, queries: usize, passes: usize) -> Option<Vec<[u64; N]>> {
     let mut values = vec![[0u64; N]; passes];
-    if passes == 0 {
-        return Some(values);
-    }
     let flags = vk::QueryResultFlags::TYPE_64;
     let got = if queries == N {
         // One number a query.

@@ -160,7 +160,6 @@ impl Backend for WgpuBackend {
             backend.queue.submit([encoder.finish()]);
             Ok(())
         })??;
-        self.timer.mark_submitted();
         self.wait()
     }
 

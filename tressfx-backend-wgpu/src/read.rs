@@ -23,11 +23,12 @@ struct Rows {
     padded: u32,
 }
 
-/// A buffer that is mapped once somebody asks for it.
+/// A buffer that comes to the CPU by itself once the encoder that fills it was submitted and has run.
 #[derive(Debug)]
 pub(crate) struct Mapped {
     buffer: wgpu::Buffer,
-    result: Option<Arc<OnceLock<bool>>>,
+    /// Whether it could be mapped; empty until then.
+    mapped: Arc<OnceLock<bool>>,
 }
 
 impl Mapped {
@@ -38,26 +39,31 @@ impl Mapped {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        Self { buffer, result: None }
+        Self { buffer, mapped: Arc::default() }
     }
 
     pub(crate) fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
     }
 
-    /// The bytes if the GPU is done; otherwise asks for them, without waiting. Must not be called before the copy was
-    /// submitted.
-    pub(crate) fn bytes(&mut self, device: &wgpu::Device) -> Option<wgpu::BufferView> {
-        if self.result.is_none() {
-            let result = Arc::new(OnceLock::new());
-            self.result = Some(result.clone());
-            self.buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
-                let _ = result.set(mapped.is_ok());
-            });
-        }
+    /// After the last command of `encoder` that fills it.
+    pub(crate) fn map_on_submit(&self, encoder: &wgpu::CommandEncoder) {
+        let mapped = self.mapped.clone();
+        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
+            let _ = mapped.set(result.is_ok());
+        });
+    }
+
+    /// The bytes if they are there; never waits.
+    pub(crate) fn bytes(&self, device: &wgpu::Device) -> Option<wgpu::BufferView> {
         let _ = device.poll(wgpu::PollType::Poll);
-        let mapped = *self.result.as_ref()?.get()?;
+        let mapped = *self.mapped.get()?;
         mapped.then(|| self.buffer.get_mapped_range(..).ok()).flatten()
+    }
+
+    /// Whether its encoder was thrown away, and with it what would have mapped it.
+    pub(crate) fn is_lost(&self) -> bool {
+        Arc::strong_count(&self.mapped) == 1 && self.mapped.get().is_none()
     }
 }
 
@@ -72,6 +78,7 @@ impl WgpuBackend {
     ) {
         let copy = Mapped::new(&self.device, bytes.max(4));
         encoder.copy_buffer_to_buffer(self.buffer(src, "read buffer"), offset, copy.buffer(), 0, bytes);
+        copy.map_on_submit(encoder);
         let rows = Rows { count: 1, bytes: bytes as u32, padded: bytes as u32 };
         self.reads.insert(ticket, PendingRead { copy, rows });
     }
@@ -92,12 +99,13 @@ impl WgpuBackend {
             },
             wgpu::Extent3d { depth_or_array_layers: 1, ..size },
         );
+        copy.map_on_submit(encoder);
         let rows = Rows { count: size.height, bytes, padded };
         self.reads.insert(ticket, PendingRead { copy, rows });
     }
 
     pub(crate) fn take_read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
-        let pending = self.reads.get_mut(&ticket)?;
+        let pending = self.reads.get(&ticket)?;
         let rows = pending.rows;
         let bytes = pending.copy.bytes(&self.device)?;
         let tight = bytes
@@ -109,6 +117,11 @@ impl WgpuBackend {
         drop(bytes);
         self.reads.remove(&ticket);
         Some(tight)
+    }
+
+    /// Drops the read-backs of encoders that were thrown away.
+    pub(crate) fn forget_lost_reads(&mut self) {
+        self.reads.retain(|_, read| !read.copy.is_lost());
     }
 
     /// Waits for everything that was submitted.

@@ -16,6 +16,7 @@ impl Record for WgpuBackend {
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, list: &PassList) -> Result<()> {
         check(list);
         self.check_lost()?;
+        self.forget_lost_reads();
         // Uploads take effect in the order of the list, so they are copies in the encoder and not writes of the queue.
         let uploads = (!list.bytes.is_empty()).then(|| {
             self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

@@ -39,8 +39,6 @@ pub(crate) struct Frame {
 struct Finished {
     timings: Vec<Timing>,
     copy: Mapped,
-    /// Before its encoder is submitted its times must not be asked for.
-    submitted: bool,
 }
 
 impl Timer {
@@ -90,17 +88,11 @@ impl Timer {
     pub(crate) fn end(&mut self, encoder: &mut wgpu::CommandEncoder, frame: Frame) {
         encoder.resolve_query_set(&frame.queries, 0..frame.used, &frame.resolved, 0);
         encoder.copy_buffer_to_buffer(&frame.resolved, 0, frame.copy.buffer(), 0, frame.resolved.size());
-        // An engine that records the next frame has submitted this one.
-        self.mark_submitted();
-        self.pending.push_back(Finished { timings: frame.timings, copy: frame.copy, submitted: false });
+        frame.copy.map_on_submit(encoder);
+        self.pending.push_back(Finished { timings: frame.timings, copy: frame.copy });
         if self.pending.len() > MAX_PENDING {
             self.pending.pop_front();
         }
-    }
-
-    /// Everything recorded so far is on its way.
-    pub(crate) fn mark_submitted(&mut self) {
-        self.pending.iter_mut().for_each(|finished| finished.submitted = true);
     }
 
     /// The newest list whose times have arrived; older ones are forgotten.
@@ -108,9 +100,6 @@ impl Timer {
         let Some(period) = self.period else { return Vec::new() };
         for index in (0..self.pending.len()).rev() {
             let finished = &mut self.pending[index];
-            if !finished.submitted {
-                continue;
-            }
             let Some(bytes) = finished.copy.bytes(device) else { continue };
             let ticks: Vec<u64> =
                 bytes.chunks_exact(8).map(|tick| u64::from_le_bytes(tick.try_into().expect("8 bytes"))).collect();

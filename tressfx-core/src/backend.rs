@@ -35,10 +35,10 @@ pub trait Backend {
     fn run(&mut self, list: &PassList) -> Result<()>;
 
     /// The bytes of a finished read-back, rows tightly packed. They are given once; `None` before they are there.
-    /// To be asked only after the list was submitted.
     fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>>;
 
-    /// Cost of each compute and raster pass of the newest finished list, in its order; empty where the device cannot time.
+    /// Cost of each compute and raster pass of the newest finished list that has any, in its order. They are given once; empty
+    /// where there are none yet, or the device cannot time.
     fn timings(&mut self) -> Vec<Timing>;
 
     /// Bytes of buffers and textures that this backend made: now, and at most so far.

@@ -114,7 +114,7 @@ impl Layout {
 }
 
 /// Walks lists in the order in which they are recorded. It lives as long as a backend, so that it joins frames too.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Hazards {
     states: HashMap<Resource, State>,
 }
