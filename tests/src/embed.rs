@@ -97,7 +97,7 @@ const LOAD: ShaderSource = ShaderSource {
         "@group(0) @binding(0) var picture: texture_2d<f32>;
         @group(0) @binding(1) var<storage, read_write> values: array<u32>;
         @compute @workgroup_size(4) fn load(@builtin(local_invocation_index) i: u32) {
-            values[i] = pack4x8unorm(textureLoad(picture, vec2<u32>(i, 1u), 0));
+            values[i] = pack4x8unorm(textureLoad(picture, vec2<i32>(i32(i), 1), 0));
         }",
     ),
     library: &[],

@@ -4,7 +4,10 @@
 mod wgpu {
     use tressfx_backend_wgpu::WgpuBackend;
 
-    tressfx_conformance::suite!(|| WgpuBackend::headless());
+    tressfx_conformance::suite!(|| {
+        let _alone = tressfx_backend_vulkan::alone();
+        WgpuBackend::headless()
+    });
 
     #[test]
     fn an_adapter_that_is_not_there_is_named() {

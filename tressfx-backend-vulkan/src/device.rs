@@ -10,6 +10,7 @@ use tressfx_core::error::{Error, Result};
 use tressfx_core::shader::SpirvOptions;
 
 use crate::instance::{Instance, describe, names};
+use crate::label::alone;
 
 /// How a device of one's own is opened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -96,6 +97,7 @@ impl Gpu {
     }
 
     pub(crate) fn open(options: &VulkanOptions) -> Result<Self> {
+        let _alone = alone();
         let started = Instance::start(options.validation)?;
         let (physical_device, device, queue_family, enabled) = open_device(&started, options)?;
         // SAFETY: the family has one queue at least, and it was asked for.
@@ -169,14 +171,16 @@ impl Gpu {
 impl Drop for Gpu {
     fn drop(&mut self) {
         // An engine's device stays; our own goes, and its instance after it.
-        let Some(_instance) = &self.owned else { return };
+        let Some(instance) = self.owned.take() else { return };
         // The allocator gives its memory back while the device is still there.
         let mut allocator = self.allocator.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(empty) = Allocator::new(&memory_of(&self.instance, self.physical_device, &self.device)) {
             drop(std::mem::replace(&mut *allocator, empty));
         }
+        let _alone = alone();
         // SAFETY: all that was made from the device is gone, since it held this.
         unsafe { self.device.destroy_device(None) };
+        drop(instance);
     }
 }
 

@@ -2,39 +2,62 @@
 
 use std::collections::BTreeSet;
 use std::ffi::{CStr, c_char};
+use std::sync::OnceLock;
 
 use ash::{ext, vk};
 use tressfx_core::error::{Error, Result};
 
+use crate::label::alone;
 use crate::validation::{self, Messages};
 
-/// An instance of our own.
+/// An instance of our own. To be made, asked for adapters and dropped [`alone`].
 pub(crate) struct Instance {
     pub(crate) instance: ash::Instance,
     /// Whether VK_EXT_debug_utils is enabled.
     pub(crate) debug_utils: bool,
     messages: Option<Messages>,
-    /// The loader must stay as long as anything of Vulkan is used.
-    _entry: ash::Entry,
+}
+
+/// The loader, once for the process: loading and unloading it on several threads at once has been seen to crash inside of it.
+fn entry() -> Result<&'static ash::Entry> {
+    static ENTRY: OnceLock<Result<ash::Entry>> = OnceLock::new();
+    // SAFETY: the loader is what the system has, and it stays.
+    let load = || unsafe { ash::Entry::load() }.map_err(|error| none(format!("Vulkan was not found ({error})")));
+    ENTRY.get_or_init(load).as_ref().map_err(Clone::clone)
 }
 
 impl Instance {
     pub(crate) fn start(validation: bool) -> Result<Self> {
-        // SAFETY: the loader is what the system has; it stays as long as the instance.
-        let entry = unsafe { ash::Entry::load() }.map_err(|error| none(format!("Vulkan was not found ({error})")))?;
+        let entry = entry()?;
         // SAFETY: the entry is loaded.
         let extensions = unsafe { entry.enumerate_instance_extension_properties(None) }.unwrap_or_default();
         let debug_utils = validation || names(&extensions).contains(ext::debug_utils::NAME);
-        let wanted: &[*const c_char] = if debug_utils { &[ext::debug_utils::NAME.as_ptr()] } else { &[] };
+        // SAFETY: as above. Where the layer is not installed, making the instance says so.
+        let of_layer = unsafe { entry.enumerate_instance_extension_properties(Some(validation::LAYER)) };
+        let has_settings = names(&of_layer.unwrap_or_default()).contains(ext::layer_settings::NAME);
+        let wanted: Vec<*const c_char> = [
+            (debug_utils, ext::debug_utils::NAME),
+            (validation, ext::validation_features::NAME),
+            (validation && has_settings, ext::layer_settings::NAME),
+        ]
+        .iter()
+        .filter(|(wanted, _)| *wanted)
+        .map(|(_, name)| name.as_ptr())
+        .collect();
         let layers: &[*const c_char] = if validation { &[validation::LAYER.as_ptr()] } else { &[] };
         let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3).application_name(c"tressfx");
         let mut features = validation::features();
+        let settings = [validation::settings()];
+        let mut settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
         let mut info = vk::InstanceCreateInfo::default()
             .application_info(&application)
-            .enabled_extension_names(wanted)
+            .enabled_extension_names(&wanted)
             .enabled_layer_names(layers);
         if validation {
             info = info.push_next(&mut features);
+        }
+        if validation && has_settings {
+            info = info.push_next(&mut settings);
         }
         // SAFETY: all pointers live until the call is over.
         let instance = unsafe { entry.create_instance(&info, None) }.map_err(|error| match error {
@@ -46,9 +69,9 @@ impl Instance {
             },
             error => none(format!("Vulkan could not be started ({error})")),
         })?;
-        let mut started = Self { instance, debug_utils, messages: None, _entry: entry };
+        let mut started = Self { instance, debug_utils, messages: None };
         if validation {
-            started.messages = Some(Messages::listen(&started._entry, &started.instance)?);
+            started.messages = Some(Messages::listen(entry, &started.instance)?);
         }
         Ok(started)
     }
@@ -99,6 +122,7 @@ impl Drop for Instance {
 
 /// The adapters of the system with Vulkan 1.3, as people name them: `NAME (raw Vulkan VERSION, kind)`.
 pub fn adapters() -> Vec<String> {
+    let _alone = alone();
     let started = Instance::start(false);
     started.map_or_else(|_| Vec::new(), |started| started.adapters().into_iter().map(|(_, name)| name).collect())
 }

@@ -47,6 +47,7 @@ pub use device::{Enabled, VulkanDesc, VulkanOptions};
 /// The allocator that this backend is built against.
 pub use gpu_allocator;
 pub use instance::adapters;
+pub use label::alone;
 pub use resource::Import;
 
 /// A backend on a Vulkan device, its own or an engine's.

@@ -17,6 +17,19 @@ pub(crate) fn features() -> vk::ValidationFeaturesEXT<'static> {
     vk::ValidationFeaturesEXT::default().enabled_validation_features(ENABLED)
 }
 
+/// Storage buffers that shaders write and read are only watched where newer layers are told to.
+pub(crate) fn settings() -> vk::LayerSettingEXT<'static> {
+    static ON: vk::Bool32 = vk::TRUE;
+    vk::LayerSettingEXT {
+        value_count: 1,
+        p_values: std::ptr::from_ref(&ON).cast(),
+        ..vk::LayerSettingEXT::default()
+            .layer_name(LAYER)
+            .setting_name(c"syncval_shader_accesses_heuristic")
+            .ty(vk::LayerSettingTypeEXT::BOOL32)
+    }
+}
+
 /// Collects the messages of an instance.
 pub(crate) struct Messages {
     debug: ext::debug_utils::Instance,
@@ -69,6 +82,9 @@ unsafe extern "system" fn heard(
     let (data, texts) = unsafe { (&*data, &*texts.cast_const().cast::<Mutex<Vec<String>>>()) };
     // SAFETY: the message is a C string or null.
     let text = unsafe { data.message_as_c_str() }.map_or_else(Default::default, CStr::to_string_lossy);
+    // SAFETY: as above.
+    let name = unsafe { data.message_id_name_as_c_str() }.map_or_else(Default::default, CStr::to_string_lossy);
+    let text = if text.contains(&*name) { text } else { format!("[ {name} ] {text}").into() };
     if !EXEMPT.iter().any(|(part, _)| text.contains(part)) {
         texts.lock().unwrap_or_else(PoisonError::into_inner).push(text.into_owned());
     }

@@ -107,7 +107,10 @@ pub(super) fn arrays_know_their_length(t: &mut Subject) {
         "suite.length",
         "@group(0) @binding(0) var<storage, read> input: array<vec4<f32>>;
         @group(0) @binding(1) var<storage, read_write> output: array<u32>;
-        @compute @workgroup_size(1) fn length_of() { output[0] = arrayLength(&input); output[1] = arrayLength(&output); }",
+        @compute @workgroup_size(1) fn length_of() {
+            output[0] = arrayLength(&input) + u32(input[0].x);
+            output[1] = arrayLength(&output);
+        }",
     );
     let kernel = t.compute(&LENGTH);
     for words in [4, 400, 4000] {

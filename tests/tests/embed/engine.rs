@@ -9,7 +9,7 @@ use tressfx_backend_vulkan::gpu_allocator::MemoryLocation;
 use tressfx_backend_vulkan::gpu_allocator::vulkan::{
     Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
 };
-use tressfx_backend_vulkan::{Enabled, VulkanDesc};
+use tressfx_backend_vulkan::{Enabled, VulkanDesc, alone};
 
 /// A device and everything that the engine made from it. It panics at its end if the validation layer had something to say
 /// that nobody took.
@@ -33,6 +33,7 @@ pub(crate) struct Engine {
 
 impl Engine {
     pub(crate) fn new() -> Result<Self, String> {
+        let _alone = alone();
         // SAFETY: the loader is what the system has; it stays as long as the engine.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| error.to_string())?;
         let instance = instance(&entry)?;
@@ -209,6 +210,7 @@ impl Drop for Engine {
             }
             drop(allocator);
             self.device.destroy_command_pool(self.pool, None);
+            let _alone = alone();
             // What is left on the device by now is said here.
             self.device.destroy_device(None);
             self.debug.destroy_debug_utils_messenger(self.messenger, None);
@@ -265,7 +267,9 @@ unsafe extern "system" fn heard(
     let (data, messages) = unsafe { (&*data, &*messages.cast_const().cast::<Mutex<Vec<String>>>()) };
     // SAFETY: the message is a C string or null.
     let text = unsafe { data.message_as_c_str() }.map_or_else(Default::default, CStr::to_string_lossy);
-    messages.lock().unwrap().push(text.into_owned());
+    // SAFETY: as above.
+    let name = unsafe { data.message_id_name_as_c_str() }.map_or_else(Default::default, CStr::to_string_lossy);
+    messages.lock().unwrap().push(format!("{name} {text}"));
     vk::FALSE
 }
 
