@@ -16,7 +16,7 @@ pub trait Backend {
     /// Makes a buffer, filled with zeros.
     fn create_buffer(&mut self, desc: &BufferDesc) -> Result<BufferId>;
 
-    /// Makes a texture with one mip level and one layer.
+    /// Makes a texture with one mip level and one layer, filled with zeros.
     fn create_texture(&mut self, desc: &TextureDesc) -> Result<TextureId>;
 
     /// Compiles a compute pipeline.
@@ -41,7 +41,8 @@ pub trait Backend {
     /// where there are none yet, or the device cannot time.
     fn timings(&mut self) -> Vec<Timing>;
 
-    /// Bytes of buffers and textures that this backend made: now, and at most so far.
+    /// Bytes of buffers and textures that this backend made, as their descriptions say: now, and at most so far. What is
+    /// destroyed no longer counts, even if it is freed later.
     fn memory(&self) -> Memory;
 }
 

@@ -22,6 +22,9 @@ pub fn check(list: &PassList) {
 /// The rules: sizes and offsets are multiples of 4, uploads lie within the list's bytes, a copy has two ends, a grid fits
 /// the dimensions of every device, a buffer with the number of groups is not bound beside, each binding is of the kind that the shader declares, and within one pass nothing
 /// that is written or drawn to is also bound another way.
+///
+/// It sees no descriptions of resources. That they are alive is the backend's to check; that ranges lie within their
+/// buffers, and that pipelines fit the targets, the caller answers for.
 pub fn problem(list: &PassList) -> Option<String> {
     list.commands.iter().enumerate().find_map(|(index, command)| {
         let problem = misaligned(command).or_else(|| misused(command, list.bytes.len()))?;

@@ -141,7 +141,8 @@ impl Hazards {
         state.written | state.read
     }
 
-    /// What must be waited for before `resource` is used so.
+    /// What must be waited for before `resource` is used so: for uses that no command says. A backend that fills a new
+    /// resource with zeros says it here, and one that takes a resource from an engine says here what the engine did to it.
     pub fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
         let state = self.states.entry(resource).or_default();
         let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));

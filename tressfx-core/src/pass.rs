@@ -95,7 +95,7 @@ pub struct Draw {
     pub instances: u32,
 }
 
-/// Draws into the same targets.
+/// Draws into the same targets, which are all of one size. Without draws it only clears.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RasterPass {
     /// Its name.
@@ -104,7 +104,7 @@ pub struct RasterPass {
     pub colors: Vec<(TextureId, Load<[f32; 4]>)>,
     /// The depth target and how it begins.
     pub depth: Option<(TextureId, Load<f32>)>,
-    /// What is drawn, in order.
+    /// What is drawn, in order, by pipelines that were made for the formats of the targets.
     pub draws: Vec<Draw>,
 }
 

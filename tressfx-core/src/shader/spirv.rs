@@ -22,7 +22,8 @@ pub struct SpirvOptions {
 }
 
 impl Shader {
-    /// The entry point of one stage as SPIR-V words. Bindings lie in descriptor set 0 under their WGSL numbers.
+    /// The entry point of one stage as SPIR-V words, under its WGSL name. Bindings lie in descriptor set 0 under their WGSL
+    /// numbers.
     ///
     /// The clip space is WebGPU's, y up: turn it with a viewport of negative height. Group memory is not zeroed and loops
     /// are not bounded; the library's kernels need neither.
