@@ -17,6 +17,8 @@ use crate::tables::whole;
 #[derive(Debug)]
 pub(crate) struct PendingRead {
     copy: HostBuffer,
+    /// How many bytes were asked for.
+    bytes: u64,
     /// The recording that makes it.
     recording: u64,
 }
@@ -29,9 +31,12 @@ impl PendingRead {
 
 impl VulkanBackend {
     fn pending(&mut self, ticket: Ticket, bytes: u64, recording: u64) -> Result<vk::Buffer> {
-        let copy = self.gpu.host_buffer("hair.read_back", bytes, MemoryLocation::GpuToCpu)?;
+        let copy = self.gpu.host_buffer("hair.read_back", bytes.max(4), MemoryLocation::GpuToCpu)?;
         let buffer = copy.buffer;
-        self.reads.insert(ticket, PendingRead { copy, recording });
+        // A list that is recorded again brings its bytes again, whether anybody asked for the first or not.
+        if let Some(unread) = self.reads.insert(ticket, PendingRead { copy, bytes, recording }) {
+            self.throw_away(Garbage::Host(unread.copy));
+        }
         Ok(buffer)
     }
 
@@ -45,6 +50,9 @@ impl VulkanBackend {
         let copy = self.pending(ticket, bytes, recording)?;
         let region = vk::BufferCopy { src_offset: offset, dst_offset: 0, size: bytes };
         let src = self.buffer(src, "read buffer").buffer;
+        if bytes == 0 {
+            return Ok(());
+        }
         // SAFETY: the command buffer is being recorded, and both buffers live until it has run.
         unsafe { self.gpu.device.cmd_copy_buffer(commands, src, copy, &[region]) };
         Ok(())
@@ -76,8 +84,8 @@ impl VulkanBackend {
         if !self.frames.has_run(&self.gpu, recording) {
             return None;
         }
-        let PendingRead { copy, .. } = self.reads.remove(&ticket)?;
-        let bytes = copy.memory.mapped_slice().map(|all| all[..copy.bytes as usize].to_vec());
+        let PendingRead { copy, bytes, .. } = self.reads.remove(&ticket)?;
+        let bytes = copy.memory.mapped_slice().map(|all| all[..bytes as usize].to_vec());
         self.throw_away(Garbage::Host(copy));
         bytes
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{compilers, driver};
+use crate::{compilers, driver, validation};
 
 /// Built-in grooms that the demo renders, and where the picture goes.
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
@@ -85,7 +85,9 @@ pub(crate) fn docs() -> Result<(), String> {
 pub(crate) fn test() -> Result<(), String> {
     step(&["fmt", "--all", "--check"])?;
     step(&["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"])?;
-    driver::ensure(&tressfx("debug")?)?;
+    let tressfx = tressfx("debug")?;
+    driver::ensure(&tressfx)?;
+    validation::ensure(&tressfx)?;
     compilers::ensure()?;
     println!("cargo test --workspace");
     run(cargo(&["test", "--workspace", "--quiet"]).env("TRESSFX_SHADER_COMPILERS", "required"))?;

@@ -4,6 +4,7 @@ mod chore;
 mod compilers;
 mod driver;
 mod packages;
+mod validation;
 
 use std::process::ExitCode;
 
@@ -11,8 +12,8 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
-  test   formatting, clippy, all tests, and the documentation, each without a warning; installs compilers of
-         other shader languages where there are none
+  test   formatting, clippy, all tests, and the documentation, each without a warning; installs the validation
+         layer of Vulkan and compilers of other shader languages where there are none
   docs   makes the pictures of README.md and docs/ anew";
 
 fn main() -> ExitCode {

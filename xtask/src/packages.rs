@@ -12,6 +12,8 @@ pub(crate) struct PackageManager {
     install: &'static [&'static str],
     /// A software Vulkan.
     pub(crate) driver: &'static [&'static str],
+    /// The validation layer of Vulkan.
+    pub(crate) validation: &'static [&'static str],
     /// glslang and the tools of SPIR-V.
     pub(crate) compilers: &'static [&'static str],
 }
@@ -22,6 +24,7 @@ const PACKAGE_MANAGERS: [PackageManager; 4] = [
         refresh: &["update"],
         install: &["install", "--yes", "--no-install-recommends"],
         driver: &["mesa-vulkan-drivers", "libvulkan1"],
+        validation: &["vulkan-validationlayers"],
         compilers: &["glslang-tools", "spirv-tools"],
     },
     PackageManager {
@@ -29,6 +32,7 @@ const PACKAGE_MANAGERS: [PackageManager; 4] = [
         refresh: &[],
         install: &["install", "-y"],
         driver: &["mesa-vulkan-drivers", "vulkan-loader"],
+        validation: &["vulkan-validation-layers"],
         compilers: &["glslang", "spirv-tools"],
     },
     PackageManager {
@@ -36,6 +40,7 @@ const PACKAGE_MANAGERS: [PackageManager; 4] = [
         refresh: &[],
         install: &["-Sy", "--noconfirm"],
         driver: &["vulkan-swrast", "vulkan-icd-loader"],
+        validation: &["vulkan-validation-layers"],
         compilers: &["glslang", "spirv-tools"],
     },
     PackageManager {
@@ -43,6 +48,7 @@ const PACKAGE_MANAGERS: [PackageManager; 4] = [
         refresh: &[],
         install: &["add"],
         driver: &["mesa-vulkan-swrast", "vulkan-loader"],
+        validation: &["vulkan-validation-layers"],
         compilers: &["glslang", "spirv-tools"],
     },
 ];

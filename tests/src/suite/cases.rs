@@ -24,6 +24,8 @@ macro_rules! each_case {
                 a_read_back_is_given_once: [ReadBack];
                 a_ticket_that_nobody_ran_gives_nothing: [];
                 new_buffers_are_zero: [ReadBack];
+                new_textures_are_zero: [ReadBack Raster];
+                an_empty_read_back_is_empty: [ReadBack];
                 what_follows_a_destroyed_buffer_is_zero: [ReadBack];
                 an_empty_list_runs: [];
                 a_list_run_again_does_the_same: [ReadBack];

@@ -1,6 +1,6 @@
 //! Buffers: what goes in, what is moved, what comes back, and in which order.
 
-use tressfx_core::backend::{BufferDesc, BufferUse, Memory};
+use tressfx_core::backend::{BufferDesc, BufferUse, Format, Memory};
 use tressfx_core::pass::Command;
 
 use super::subject::{Subject, noise};
@@ -110,6 +110,19 @@ pub(super) fn new_buffers_are_zero(t: &mut Subject) {
     }
 }
 
+pub(super) fn new_textures_are_zero(t: &mut Subject) {
+    for format in [Format::Rgba8, Format::Bgra8Srgb, Format::Rgba16F, Format::Depth32F] {
+        let fresh = t.texture([65, 33], format);
+        assert!(t.texels(fresh).iter().all(|&byte| byte == 0), "{format:?}");
+    }
+}
+
+pub(super) fn an_empty_read_back_is_empty(t: &mut Subject) {
+    let values = t.storage(&[7; 4]);
+    let ticket = t.list.read_buffer(values, 8, 0);
+    assert_eq!(t.read(ticket), [0u8; 0]);
+}
+
 pub(super) fn what_follows_a_destroyed_buffer_is_zero(t: &mut Subject) {
     for _ in 0..4 {
         let values = t.storage(&[u32::MAX; 10_000]);
@@ -146,7 +159,7 @@ pub(super) fn memory_counts_what_is_made_and_destroyed(t: &mut Subject) {
     let Memory { bytes, peak } = t.backend.memory();
     assert_eq!(bytes, before.bytes + (4 << 16));
     assert!(peak >= bytes);
-    let texture = t.texture([31, 7], tressfx_core::backend::Format::Rgba16F);
+    let texture = t.texture([31, 7], Format::Rgba16F);
     assert_eq!(t.backend.memory().bytes, bytes + 31 * 7 * 8);
     t.backend.destroy(values.into());
     t.backend.destroy(texture.into());
