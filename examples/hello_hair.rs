@@ -45,7 +45,7 @@ fn main() -> Result<()> {
 
     // The head, and the hair over it.
     let head = MeshDraw { mesh: &head, surface: Surface::default(), pose: Pose::IDENTITY };
-    let draws = [SectionDraw { section: &hair, material: &material, pose: sim.head_lead() }];
+    let draws = [SectionDraw { section: &hair, material: &material, pose: sim.pose() }];
     renderer.reserve(&mut gpu, &view, &draws)?;
     scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head]);
     renderer.draw(&mut list, &view, &lights, &targets, &draws);

@@ -58,8 +58,8 @@ impl Frames {
         list.clear_commands();
         let wind = Some(Wind::new(glam::Vec3::new(2.0, 0.0, 1.0)));
         self.sim.step(list, &StepInput { wind, ..StepInput::new(1.0 / 60.0, Pose::IDENTITY) }).expect("a step");
-        let material = &self.material;
-        let draw = |section| SectionDraw { section, material, pose: Pose::IDENTITY };
+        let (material, pose) = (&self.material, self.sim.pose());
+        let draw = |section| SectionDraw { section, material, pose };
         let draws: Vec<_> = self.sections.iter().map(draw).collect();
         self.renderer.draw(list, &self.view, &self.lights, &self.targets, &draws);
     }

@@ -54,7 +54,7 @@ fn bench(backend: &mut WgpuBackend, groom: &str) -> Result<(), Failure> {
     let strands =
         Strands::new(&asset(name)?, &StrandOptions { follows: Some(follows.parse()?), ..Default::default() })?;
     let mut uploads = PassList::new();
-    let buffers = StrandBuffers::new(backend, StrandShape::of(&strands))?;
+    let buffers = StrandBuffers::new(backend, StrandShape::of(&strands), Vec3::ZERO)?;
     buffers.upload(&mut uploads, &strands);
     let section = Section::new(backend, &mut uploads, buffers, StrandInfo::new(&strands))?;
     backend.run(&uploads)?;

@@ -45,11 +45,7 @@ impl Hair {
         let section = Section::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
         let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size, format))?;
         let material = Material::default();
-        renderer.reserve(
-            backend,
-            view,
-            &[SectionDraw { section: &section, material: &material, pose: Pose::IDENTITY }],
-        )?;
+        renderer.reserve(backend, view, &[SectionDraw { section: &section, material: &material, pose: sim.pose() }])?;
         Ok(Self { sim, section, material, renderer, targets, list, counters: VecDeque::new() })
     }
 
@@ -63,7 +59,7 @@ impl Hair {
             self.list.clear_commands();
         }
         self.sim.step(&mut self.list, &StepInput::new(dt, head))?;
-        let draws = [SectionDraw { section: &self.section, material: &self.material, pose: self.sim.head_lead() }];
+        let draws = [SectionDraw { section: &self.section, material: &self.material, pose: self.sim.pose() }];
         self.renderer.draw(&mut self.list, view, lights, &self.targets, &draws);
         self.counters.push_back(self.renderer.read_counters(&mut self.list));
         Ok(&self.list)
@@ -96,7 +92,7 @@ impl Hair {
         let Targets { color, depth } = std::mem::replace(&mut self.targets, targets);
         [color, depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
         self.renderer.resize(backend, view.size)?;
-        let draw = SectionDraw { section: &self.section, material: &self.material, pose: Pose::IDENTITY };
+        let draw = SectionDraw { section: &self.section, material: &self.material, pose: self.sim.pose() };
         Ok(self.renderer.reserve(backend, view, &[draw])?)
     }
 

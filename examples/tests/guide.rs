@@ -131,7 +131,7 @@ fn everything() -> PassList {
     scene.draw(&mut list, &view, &Lights::default(), &targets, &Backdrop::default(), &[mesh]);
     let section = Section::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
     let renderer = HairRenderer::new(&mut backend, &RenderDesc::new(size, Format::Rgba16F)).unwrap();
-    let draw = SectionDraw { section: &section, material: &Material::default(), pose: sim.head_lead() };
+    let draw = SectionDraw { section: &section, material: &Material::default(), pose: sim.pose() };
     renderer.draw(&mut list, &view, &Lights::default(), &targets, &[draw]);
     list
 }

@@ -207,7 +207,7 @@ impl Stage {
 
     /// Uploads a groom with the next run of `list`.
     pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> Section {
-        let buffers = StrandBuffers::new(&mut *self.backend, groom.shape).expect("buffers");
+        let buffers = StrandBuffers::new(&mut *self.backend, groom.shape, Vec3::ZERO).expect("buffers");
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);

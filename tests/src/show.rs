@@ -8,7 +8,7 @@ use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::View;
 use tressfx_render::{
     Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
     SectionDraw, StrandInfo, Surface, Targets,
@@ -122,7 +122,7 @@ impl<B: Backend> Show<B> {
         let section = section.expect("a section");
         let desc = RenderDesc { k: scene.k, ..RenderDesc::new(scene.size, TARGET) };
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
-        let draw = SectionDraw { section: &section, material: &scene.material, pose: Pose::IDENTITY };
+        let draw = SectionDraw { section: &section, material: &scene.material, pose: sim.pose() };
         renderer.reserve(gpu, &view, &[draw]).expect("a pool");
         let body = ScenePass::new(gpu, TARGET, view.depth).expect("a scene pass");
         gpu.run(&uploads).expect("the uploads run");
@@ -143,7 +143,7 @@ impl<B: Backend> Show<B> {
         let body = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: input.head };
         let meshes: Vec<_> = self.meshes.iter().map(body).collect();
         self.body.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
-        let pose = self.sim.head_lead();
+        let pose = self.sim.pose();
         let draw = SectionDraw { section: &self.section, material: &self.scene.material, pose };
         self.renderer.draw(list, view, lights, targets, &[draw]);
     }

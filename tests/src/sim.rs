@@ -8,7 +8,7 @@ use tressfx_core::backend::Backend;
 use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_core::strands::{StrandOptions, Strands, about};
 use tressfx_core::view::Pose;
 use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
 
@@ -62,10 +62,28 @@ impl Rig {
         }
     }
 
-    /// Positions of all strands of a section, strand-major.
+    /// Positions of all strands of a section about the centre of the groom, strand-major.
     pub fn positions(&mut self, section: usize) -> Vec<Vec4> {
         let tickets = self.run(|sim, list| sim.read_positions(list));
         self.read(section, tickets[section])
+    }
+
+    /// Positions of all strands of a section in the world, strand-major.
+    pub fn world(&mut self, section: usize) -> Vec<Vec4> {
+        let pose = self.sim.pose();
+        let to_world = |position: &Vec4| pose.transform(position.truncate()).extend(position.w);
+        self.positions(section).iter().map(to_world).collect()
+    }
+
+    /// Rest pose of the guides of a section about the centre of the groom, strand-major.
+    pub fn rest(&self, section: usize) -> Vec<Vec4> {
+        about(self.sim.center(), &self.strands[section].rest)
+    }
+
+    /// A capsule about the centre of the groom.
+    pub fn centred(&self, capsule: &Capsule) -> Capsule {
+        let center = self.sim.center();
+        Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule }
     }
 
     /// Positions of the guides of a section one sub-step ago, strand-major.

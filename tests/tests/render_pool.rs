@@ -124,7 +124,7 @@ fn nothing_to_draw_makes_no_pass() {
     let targets =
         Targets { color: texture(&mut backend, Format::Rgba16F), depth: texture(&mut backend, Format::Depth32F) };
     let section = |backend: &mut NullBackend, groom: &Groom| {
-        let buffers = StrandBuffers::new(backend, groom.shape).unwrap();
+        let buffers = StrandBuffers::new(backend, groom.shape, Vec3::ZERO).unwrap();
         Section::new(backend, &mut PassList::new(), buffers, groom.info.clone()).unwrap()
     };
     let (empty, full) = (Groom::new(&[], material()), Groom::wavy(3, 4, 6, material()));

@@ -62,8 +62,15 @@ fn buried(vertices: u32) -> Strands {
 
 /// The kernel, once from the rest pose, on a head that moves: positions and previous positions.
 fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<glam::DVec3>); 2] {
-    let motion = Pose { rotation: Quat::from_rotation_z(0.002), translation: Vec3::X * 0.0003 };
-    let sub_step = SubStep { length: 1.0 / 120.0, length_ratio: 1.0, time: 0.0, head, motion, acceleration: 0.0 };
+    let sub_step = SubStep {
+        length: 1.0 / 120.0,
+        length_ratio: 1.0,
+        time: 0.0,
+        rotation: head.rotation,
+        turn: Quat::from_rotation_z(0.002),
+        shift: Vec3::X * 0.0003,
+        acceleration: 0.0,
+    };
     let step = Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
@@ -72,15 +79,16 @@ fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<glam::DVec3>); 2] {
         sim.record_stage(list, Stage::Collide, false);
     });
     let vertices = rig.strands[0].vertices as usize;
+    let (rest, ball) = (rig.rest(0), rig.centred(&BALL));
     for guide in 0..GUIDES {
         let range = guide * vertices..(guide + 1) * vertices;
         let mut of_guide = Guide {
-            rest: &rig.strands[0].rest[range.clone()],
+            rest: &rest[range.clone()],
             rest_lengths: &rig.strands[0].rest_lengths[range.clone()],
             positions: &mut positions[range.clone()],
             previous: &mut previous[range],
         };
-        reference::collide(&step, &mut of_guide, &[BALL]);
+        reference::collide(&step, &mut of_guide, &[ball]);
     }
     [(rig.positions(0), positions), (rig.previous(0), previous)]
 }
@@ -111,7 +119,7 @@ fn strands_that_point_at_a_centre_get_out() {
         let motion = Motion::still(&rig.strands[0]);
         let deepest = [0.05, 0.1, 0.25].map(|seconds| {
             rig.play(&motion, seconds, 60);
-            let movable = rig.positions(0).into_iter().filter(|position| position.w > 0.0);
+            let movable = rig.world(0).into_iter().filter(|position| position.w > 0.0);
             movable.map(|position| -BALL.distance(position.truncate())).fold(0.0, f32::max)
         });
         println!("{vertices} vertices: deepest after 6, 18 and 48 sub-steps: {deepest:?} m");

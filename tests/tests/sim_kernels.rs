@@ -6,7 +6,6 @@ use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_conformance::sim::{Motion, REAL, Rig, random_strands, real, strand_errors, wide, worst};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
-use tressfx_core::view::Pose;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{Step, Units};
 use tressfx_sim::{SimParams, Stage, SubStep, Wind};
@@ -37,17 +36,14 @@ fn capsules(strands: &Strands) -> Vec<Capsule> {
 /// A sub-step in which everything happens. It moves vertices by less than the edges of the shortest strands are long: further
 /// than that, where an edge points is a matter of rounding.
 fn step(strands: &Strands) -> Step {
-    let motion = Pose {
-        rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.003, -0.002, 0.004),
-        translation: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
-    };
-    let before = Motion::wild(strands).head(0.2);
+    let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.003, -0.002, 0.004);
     let sub_step = SubStep {
         length: 1.0 / 240.0,
         length_ratio: 1.0,
         time: 0.7,
-        head: motion.after(&before),
-        motion,
+        rotation: turn * Motion::wild(strands).head(0.2).rotation,
+        turn,
+        shift: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
         acceleration: 0.0,
     };
     let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
@@ -63,12 +59,13 @@ fn state(rig: &mut Rig) -> State {
 }
 
 /// The reference of a stage, applied to all guides.
-fn expected(stage: Stage, strands: &Strands, step: &Step, capsules: &[Capsule], state: &mut State) {
+fn expected(stage: Stage, rig: &Rig, step: &Step, capsules: &[Capsule], state: &mut State) {
+    let (strands, rest) = (&rig.strands[0], rig.rest(0));
     let (vertices, params) = (strands.vertices as usize, params());
     for guide in 0..strands.guides as usize {
         let range = guide * vertices..(guide + 1) * vertices;
         let mut of_guide = Guide {
-            rest: &strands.rest[range.clone()],
+            rest: &rest[range.clone()],
             rest_lengths: &strands.rest_lengths[range.clone()],
             positions: &mut state.0[range.clone()],
             previous: &mut state.1[range],
@@ -95,6 +92,7 @@ fn check(name: &str, strands: Strands) {
     let (step, motion) = (step(&strands), Motion::wild(&strands));
     let Some(mut rig) = rig(strands, params(), &capsules) else { return };
     rig.play(&motion, 0.2, 60);
+    let capsules: Vec<_> = capsules.iter().map(|capsule| rig.centred(capsule)).collect();
     let mut touched = false;
     for stage in Stage::SUB_STEP {
         let before = state(&mut rig);
@@ -104,7 +102,7 @@ fn check(name: &str, strands: Strands) {
         });
         let after = (rig.positions(0), rig.previous(0));
         let mut reference = before.clone();
-        expected(stage, &rig.strands[0], &step, &capsules, &mut reference);
+        expected(stage, &rig, &step, &capsules, &mut reference);
         let guides = reference.0.len();
         for (gpu, reference) in [(&after.0[..guides], &reference.0), (&after.1[..], &reference.1)] {
             let errors = strand_errors(&rig.strands[0], gpu, reference);

@@ -5,7 +5,7 @@ mod support;
 use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
 use tressfx_core::builtin::Builtin;
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::Strands;
+use tressfx_core::strands::{Strands, about};
 use tressfx_sim::{ClockParams, SectionDesc, SimParams, metrics, reference};
 
 use support::rig;
@@ -90,7 +90,7 @@ fn tips_at(strands: &Strands, motion: &Motion, fps: u32) -> Option<Vec<glam::Vec
 
 /// 30, 60 and 144 frames a second against 120, where the head is known at every sub-step. The motion starts where it neither
 /// has its highest speed nor its highest acceleration: at the other end of so many periods either would hide errors.
-fn frame_rates_agree(name: &str, strands: &Strands, share: usize, allowed: f64) {
+fn frame_rates_agree(name: &str, strands: &Strands, share: usize) {
     let motion = Motion { start: 1.0 / 24.0, ..Motion::wild(strands) };
     let Some(exact) = tips_at(strands, &motion, 120) else { return };
     for fps in [30, 60, 144] {
@@ -98,23 +98,23 @@ fn frame_rates_agree(name: &str, strands: &Strands, share: usize, allowed: f64) 
         let at = |share: usize| distances[(distances.len() - 1) * share / 100];
         let (median, most, last) = (at(50), at(99), at(100));
         println!("{name}: {fps} fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand");
-        assert!(at(share) < allowed, "{name} at {fps} fps: {}", at(share));
+        assert!(at(share) < 0.02, "{name} at {fps} fps: {}", at(share));
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_are() {
     for name in ["straight", "wavy", "curly", "long", "fur"] {
-        frame_rates_agree(name, &builtin(name, 200), 100, 0.02);
+        frame_rates_agree(name, &builtin(name, 200), 100);
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_of_real_grooms_are() {
     for path in REAL {
-        // Of the mohawk some strands are shorter than what the head moves in a sub-step, and some are unstable.
-        let (share, allowed) = if path == REAL[0] { (99, 0.03) } else { (100, 0.02) };
-        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share, allowed));
+        // Edges of the mohawk are shorter than what so wild a head moves in a sub-step, and some of its strands are chaotic.
+        let share = if path == REAL[0] { 99 } else { 100 };
+        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share));
     }
 }
 
@@ -159,9 +159,9 @@ fn a_groom_comes_to_rest_and_keeps_its_style() {
         };
         let motion = Motion::still(&rig.strands[0]);
         rig.play(&motion, 3.0, 60);
-        let before = rig.positions(0);
+        let before = rig.world(0);
         rig.frame(&motion.input(4.0, 1.0 / 60.0));
-        let (after, strands) = (rig.positions(0), &rig.strands[0]);
+        let (after, strands) = (rig.world(0), &rig.strands[0]);
         let moved = tip_distances(strands, &tips(strands, &before), &tips(strands, &after));
         let drooped = tip_distances(strands, &tips(strands, &strands.rest), &tips(strands, &after));
         let mean = drooped.iter().sum::<f64>() / drooped.len() as f64;
@@ -200,7 +200,7 @@ fn references_agree_on_what_a_frame_is() {
     let motion = Motion::still(&strands);
     let report = reference.step(&motion.input(0.0, 0.0)).unwrap();
     assert!(report.reset && report.sub_steps == 0);
-    let rest = wide(&strands.rest_of_all());
+    let rest = wide(&about(strands.guide_bounds().coarse_center(), &strands.rest_of_all()));
     let error = reference.positions(0).iter().zip(rest).map(|(one, other)| one.distance(other)).fold(0.0, f64::max);
     assert!(error < 1e-7, "{error}");
 }

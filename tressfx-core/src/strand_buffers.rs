@@ -1,10 +1,12 @@
 //! The part of a section that simulation and rendering share on the GPU.
 
+use glam::Vec3;
+
 use crate::backend::{Backend, BufferDesc, BufferUse};
 use crate::error::Result;
 use crate::id::BufferId;
 use crate::pass::PassList;
-use crate::strands::Strands;
+use crate::strands::{Strands, about};
 
 /// How many strands of how many vertices a section has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,11 +58,13 @@ impl StrandShape {
 }
 
 /// What the simulation writes and the rendering reads; vertex-major, see [`StrandShape::index`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrandBuffers {
     /// The counts.
     pub shape: StrandShape,
-    /// `vec4<f32>` a vertex of every strand: position in the unit of the file, inverse mass.
+    /// The point of the rest pose that positions are about, see [`Bounds::coarse_center`](crate::strands::Bounds::coarse_center).
+    pub center: Vec3,
+    /// `vec4<f32>` a vertex of every strand: position about the centre in the unit of the file, inverse mass.
     pub positions: BufferId,
     /// `vec4<f32>` a vertex of every strand: unit tangent towards the tip, 0.
     pub tangents: BufferId,
@@ -73,7 +77,7 @@ impl StrandBuffers {
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size.
-    pub fn new(backend: &mut dyn Backend, shape: StrandShape) -> Result<Self> {
+    pub fn new(backend: &mut dyn Backend, shape: StrandShape, center: Vec3) -> Result<Self> {
         let mut create = |label, bytes_each: u64, count: u32| {
             backend.create_buffer(&BufferDesc {
                 label,
@@ -83,6 +87,7 @@ impl StrandBuffers {
         };
         Ok(Self {
             shape,
+            center,
             positions: create("hair.positions", 16, shape.strand_vertices())?,
             tangents: create("hair.tangents", 16, shape.strand_vertices())?,
             thickness: create("hair.thickness", 4, shape.guide_vertices())?,
@@ -92,7 +97,7 @@ impl StrandBuffers {
     /// Puts the rest pose into the buffers.
     pub fn upload(&self, list: &mut PassList, strands: &Strands) {
         let copies = 1 + strands.follows as usize;
-        list.upload(self.positions, 0, &strands.interleave(&strands.rest_of_all()));
+        list.upload(self.positions, 0, &strands.interleave(&about(self.center, &strands.rest_of_all())));
         list.upload(self.tangents, 0, &strands.interleave(&strands.tangents.repeat(copies)));
         list.upload(self.thickness, 0, &strands.interleave(&strands.thickness));
     }

@@ -7,6 +7,7 @@
 //! Guide `g` is strand `g`; follow strand `f` of guide `g` is strand `guides * (1 + f) + g`.
 
 mod bounds;
+mod center;
 mod error;
 mod follow;
 mod frames;
@@ -22,6 +23,7 @@ use crate::asset::HairAsset;
 use resample::Strand;
 
 pub use bounds::Bounds;
+pub use center::about;
 pub use error::StrandsError;
 pub use options::{MAX_FOLLOWS, StrandOptions};
 pub use units::metres_per_unit;
@@ -99,9 +101,7 @@ impl Strands {
         };
         strands.derive_along_strands();
         strands.check_finite()?;
-        strands.metres_per_unit = options
-            .metres_per_unit
-            .unwrap_or_else(|| metres_per_unit(&Bounds::of(strands.rest.iter().map(|vertex| vertex.truncate()))));
+        strands.metres_per_unit = options.metres_per_unit.unwrap_or_else(|| metres_per_unit(&strands.guide_bounds()));
         strands.follow_radius = settings.follow_radius(strands.metres_per_unit);
         strands.place_follows(options.seed);
         Ok(strands)
@@ -110,6 +110,11 @@ impl Strands {
     /// Guides and follow strands.
     pub fn strand_count(&self) -> u32 {
         self.guides * (1 + self.follows)
+    }
+
+    /// The box around the rest pose of the guides.
+    pub fn guide_bounds(&self) -> Bounds {
+        Bounds::of(self.rest.iter().map(|vertex| vertex.truncate()))
     }
 
     /// The rest pose of all strands, follow strands too: `strand * vertices + vertex`.

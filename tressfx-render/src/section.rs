@@ -101,7 +101,7 @@ impl Section {
         backend: &mut dyn Backend,
         list: &mut PassList,
         buffers: StrandBuffers,
-        info: StrandInfo,
+        mut info: StrandInfo,
     ) -> Result<Self> {
         let shape = buffers.shape;
         assert_eq!(info.openness.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
@@ -121,6 +121,7 @@ impl Section {
         let color_bytes = (8 * u64::from(shape.strand_vertices())).max(16);
         let colors = create("hair.render.colors", color_bytes, BufferUse::Storage)?;
         list.upload(openness, 0, &info.openness);
+        info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         Ok(Self { buffers, info, uniform, openness, colors })
     }
 
@@ -142,7 +143,7 @@ pub struct SectionDraw<'a> {
     pub section: &'a Section,
     /// Its look.
     pub material: &'a Material,
-    /// Where its positions are moved to: what the simulation reports, else [`Pose::IDENTITY`].
+    /// From the positions in its buffers to the world: `HairSim::pose`, or what takes [`StrandBuffers::center`] to its place.
     pub pose: Pose,
 }
 

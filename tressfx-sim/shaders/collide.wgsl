@@ -12,7 +12,7 @@ import package::step::Step;
 import package::vector::{direction_or, rotate, rotate_back};
 
 @group(0) @binding(0) var<uniform> step: Step;
-/// In the space of the rest pose.
+/// In the space of the rest pose, about the centre of the groom.
 @group(0) @binding(1) var<storage, read> capsules: array<GpuCapsule>;
 @group(0) @binding(2) var<storage, read> rest_lengths: array<f32>;
 @group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
@@ -102,17 +102,17 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
 /// Changes the past of a vertex, so that its velocity is what friction leaves of it. Seen from the head, which carries the
 /// capsules.
 fn rub(i: u32, contact: Contact, start: vec3<f32>) {
-    let carried = rotate(step.motion_rotation, previous[i].xyz) + step.motion_translation;
+    let carried = rotate(step.turn, previous[i].xyz + step.shift);
     let depth = max(dot(contact.point - start, contact.normal), 0.0);
     let displacement = slid(contact.point - in_head(carried), contact.normal, depth, step.friction);
-    let past = in_world(contact.point - displacement) - step.motion_translation;
-    previous[i] = vec4(rotate_back(step.motion_rotation, past), 0.0);
+    let past = rotate_back(step.turn, in_world(contact.point - displacement)) - step.shift;
+    previous[i] = vec4(past, 0.0);
 }
 
 fn in_head(point: vec3<f32>) -> vec3<f32> {
-    return rotate_back(step.head_rotation, point - step.head_translation);
+    return rotate_back(step.head_rotation, point);
 }
 
 fn in_world(point: vec3<f32>) -> vec3<f32> {
-    return rotate(step.head_rotation, point) + step.head_translation;
+    return rotate(step.head_rotation, point);
 }

@@ -20,16 +20,18 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
     let place = vertex * STRANDS + i % GUIDES;
 
     let rest_here = rest[i];
-    let shape = rotate(step.head_rotation, rest_here.xyz) + step.head_translation;
+    let shape = rotate(step.head_rotation, rest_here.xyz);
     if (step.reset != 0u || rest_here.w == 0.0) {
         // A pinned vertex goes where the head takes it, so its past does not matter.
         positions[place] = vec4(shape, rest_here.w);
         previous[i] = vec4(shape, 0.0);
         return;
     }
-    let here = positions[place].xyz;
+    // Both are about where the centre was at the end of the last sub-step.
+    let last = positions[place].xyz;
     let before = previous[i].xyz;
-    var goal = here + step.keep * bounded(here - before, before) + step.gravity;
+    let here = last - step.shift;
+    var goal = here + step.keep * bounded(last - before, before) + step.gravity;
     @if(global_shape) {
         // Full at the root, nothing at the end of the range: a strand has no kink where the pull ends.
         let along = f32(vertex) / f32(VERTICES - 1u) / step.global_range;
@@ -43,7 +45,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
 /// speed of the car.
 fn bounded(displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    let carried = rotate(step.motion_rotation, before) + step.motion_translation - before;
+    let carried = rotate(step.turn, before) - before + step.shift;
     let relative = displacement - carried;
     let squared = dot(relative, relative);
     if (squared <= step.max_displacement * step.max_displacement) { return displacement; }

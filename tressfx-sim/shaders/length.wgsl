@@ -112,7 +112,7 @@ fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
 fn recover(strand: u32) {
     for (var i = 0u; i < VERTICES; i++) {
         let vertex = rest[i * GUIDES + strand];
-        let shape = rotate(step.head_rotation, vertex.xyz) + step.head_translation;
+        let shape = rotate(step.head_rotation, vertex.xyz);
         positions[i * STRANDS + strand] = vec4(shape, vertex.w);
         previous[i * GUIDES + strand] = vec4(shape, 0.0);
     }

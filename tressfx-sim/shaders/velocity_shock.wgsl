@@ -23,6 +23,6 @@ fn velocity_shock(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgrou
 }
 
 fn shocked(point: vec3<f32>) -> vec3<f32> {
-    let carried = rotate(step.motion_rotation, point) + step.motion_translation;
+    let carried = rotate(step.turn, point + step.shift);
     return point + step.shock * (carried - point);
 }

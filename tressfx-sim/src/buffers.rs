@@ -1,12 +1,13 @@
 //! The buffers of a section.
 
 use bytemuck::NoUninit;
+use glam::Vec3;
 use tressfx_core::Result;
 use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
 use tressfx_core::error::Label;
 use tressfx_core::id::BufferId;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_core::strands::Strands;
+use tressfx_core::strands::{Strands, about};
 
 use crate::step::Step;
 
@@ -16,7 +17,7 @@ use crate::step::Step;
 pub(crate) struct SectionBuffers {
     /// What the rendering reads too.
     pub(crate) strands: StrandBuffers,
-    /// `vec4<f32>`: rest position, inverse mass.
+    /// `vec4<f32>`: rest position about the centre of the groom, inverse mass.
     pub(crate) rest: BufferId,
     /// `f32`: rest length of the edge to the next vertex.
     pub(crate) rest_lengths: BufferId,
@@ -31,12 +32,12 @@ pub(crate) struct SectionBuffers {
 }
 
 impl SectionBuffers {
-    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3) -> Result<Self> {
         let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
         let follows = shape.guides * shape.follows;
         Ok(Self {
-            strands: StrandBuffers::new(backend, shape)?,
+            strands: StrandBuffers::new(backend, shape, center)?,
             rest: storage(backend, "hair.rest", 16, shape.guide_vertices())?,
             rest_lengths: storage(backend, "hair.rest_lengths", 4, shape.guide_vertices())?,
             previous: storage(backend, "hair.previous", 16, shape.guide_vertices())?,
@@ -56,7 +57,7 @@ impl SectionBuffers {
     /// What has to be uploaded once.
     pub(crate) fn uploads(&self, strands: &Strands) -> impl Iterator<Item = Upload> {
         let always = [
-            Upload::new(self.rest, &strands.interleave(&strands.rest)),
+            Upload::new(self.rest, &strands.interleave(&about(self.strands.center, &strands.rest))),
             Upload::new(self.rest_lengths, &strands.interleave(&strands.rest_lengths)),
             Upload::new(self.strands.thickness, &strands.interleave(&strands.thickness)),
         ];

@@ -1,6 +1,6 @@
 //! From frames of any length to sub-steps of one length.
 
-use glam::Vec3;
+use glam::{DVec3, Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use tressfx_core::strands::Bounds;
 use tressfx_core::view::Pose;
@@ -88,10 +88,12 @@ pub struct SubStep {
     pub length_ratio: f64,
     /// Simulated time at its end, s.
     pub time: f64,
-    /// The head at its end.
-    pub head: Pose,
-    /// The rigid motion of the head during it; the identity exactly if the head has not moved.
-    pub motion: Pose,
+    /// The rotation of the head at its end.
+    pub rotation: Quat,
+    /// The rotation of the head during it; the identity exactly if it has not turned.
+    pub turn: Quat,
+    /// The way of the groom's centre during it, units of the file; 0 exactly if the head has not moved.
+    pub shift: Vec3,
     /// The acceleration of the head in this frame, the largest within the groom's bounds, units of the file / s^2.
     pub acceleration: f32,
 }
@@ -99,8 +101,8 @@ pub struct SubStep {
 /// What one frame consists of.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// The strands go to rest where this head is, before the sub-steps.
-    pub reset: Option<Pose>,
+    /// The strands go to rest on a head that is turned so, before the sub-steps.
+    pub reset: Option<Quat>,
     /// Whether that is because of a teleport.
     pub teleported: bool,
     /// What is simulated, in order.
@@ -114,6 +116,8 @@ pub struct Frame {
 pub struct Clock {
     params: ClockParams,
     bounds: Bounds,
+    /// What positions are about, in the rest pose.
+    center: Vec3,
     /// Simulated time, s.
     time: f64,
     /// Time that is not simulated yet, s.
@@ -121,8 +125,8 @@ pub struct Clock {
     last_length: f64,
     /// The head at the end of the last frame; `None` asks for a reset.
     head: Option<Pose>,
-    /// The head at the start of the last frame, and that frame's length, s.
-    before: Option<(Pose, f64)>,
+    /// The head at the start of the last frame and at that of the one before, and those frames' lengths, s.
+    before: [Option<(Pose, f64)>; 2],
     /// The head at the end of the last sub-step.
     simulated: Pose,
     /// Velocities of the corners of the bounds in the last frame.
@@ -145,11 +149,12 @@ impl Clock {
         Ok(Self {
             params,
             bounds,
+            center: bounds.coarse_center(),
             time: 0.0,
             behind: 0.0,
             last_length,
             head: None,
-            before: None,
+            before: [None; 2],
             simulated: Pose::IDENTITY,
             velocities: None,
         })
@@ -180,21 +185,29 @@ impl Clock {
         self.head = None;
     }
 
-    /// The rigid motion of the head since the last sub-step: what the frame's strands must make to be where the head is now.
-    pub fn head_lead(&self) -> Pose {
-        motion(&self.simulated, &self.head.unwrap_or(self.simulated))
+    /// The point of the rest pose that positions are about.
+    pub fn center(&self) -> Vec3 {
+        self.center
     }
 
-    /// Cuts a frame. The head goes on during it as it did in the last one.
+    /// From positions after the last sub-step to the world: where the head carries the centre now, and how far it has turned
+    /// since that sub-step.
+    pub fn pose(&self) -> Pose {
+        let head = self.head.unwrap_or(self.simulated);
+        let translation = carried(self.center, &head).as_vec3();
+        Pose { rotation: turn(self.simulated.rotation, head.rotation), translation }
+    }
+
+    /// Cuts a frame. The head goes on during it as it did in the last two.
     pub fn advance(&mut self, dt: f64, head: Pose) -> Frame {
         let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
         let start = if teleported { None } else { self.head };
         let mut frame = Frame { teleported, ..Frame::default() };
         let last = start.unwrap_or_else(|| {
-            frame.reset = Some(head);
+            frame.reset = Some(head.rotation);
             self.simulated = head;
             self.velocities = None;
-            self.before = None;
+            self.before = [None; 2];
             head
         });
         let acceleration = self.acceleration(dt, &last, &head);
@@ -212,8 +225,9 @@ impl Clock {
                 length,
                 length_ratio: length / self.last_length,
                 time: self.time,
-                head: pose,
-                motion: motion(&self.simulated, &pose),
+                rotation: pose.rotation,
+                turn: turn(self.simulated.rotation, pose.rotation),
+                shift: self.way(&self.simulated, &pose).as_vec3(),
                 acceleration,
             });
             self.simulated = pose;
@@ -221,14 +235,23 @@ impl Clock {
         }
         self.behind += simulated - f64::from(count) * length;
         self.head = Some(head);
-        self.before = Some((last, dt)).filter(|_| frame.reset.is_none() && frame.dropped == 0.0);
+        self.before = match frame.reset.is_none() && frame.dropped == 0.0 {
+            true => [Some((last, dt)), self.before[0]],
+            false => [None; 2],
+        };
         frame
     }
 
     /// The way of the head in a frame of which so much time is simulated.
     fn path(&self, simulated: f64, last: Pose, head: Pose) -> Path {
-        let before = self.before.map(|(head, dt)| Before { head, length: dt / simulated });
-        Path::new(before.filter(|before| (1.0 / ALIKE..=ALIKE).contains(&before.length)), last, head)
+        let before = self.before.map(|before| before.map(|(head, dt)| Before { head, length: dt / simulated }));
+        let alike = |before: &Before| (1.0 / ALIKE..=ALIKE).contains(&before.length);
+        Path::new(before.map(|before| before.filter(alike)), last, head)
+    }
+
+    /// The way of the groom's centre.
+    fn way(&self, from: &Pose, to: &Pose) -> DVec3 {
+        if from == to { DVec3::ZERO } else { carried(self.center, to) - carried(self.center, from) }
     }
 
     fn is_teleport(&self, last: &Pose, head: &Pose) -> bool {
@@ -257,14 +280,18 @@ fn corners(bounds: &Bounds) -> [Vec3; 8] {
     })
 }
 
-/// The motion that takes `from` to `to`; the identity exactly for a head at rest.
-fn motion(from: &Pose, to: &Pose) -> Pose {
-    if from == to { Pose::IDENTITY } else { to.after(&from.inverse()) }
+/// Where the head carries a point.
+fn carried(point: Vec3, head: &Pose) -> DVec3 {
+    head.rotation.as_dquat().normalize() * point.as_dvec3() + head.translation.as_dvec3()
+}
+
+/// The rotation that takes `from` to `to`; the identity exactly for a head at rest.
+fn turn(from: Quat, to: Quat) -> Quat {
+    if from == to { Quat::IDENTITY } else { (to * from.inverse()).normalize() }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Quat;
     use proptest::prelude::*;
 
     use super::*;
@@ -273,7 +300,7 @@ mod tests {
         let bounds = Bounds { min: Vec3::splat(-0.1), max: Vec3::splat(0.1) };
         let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
         let frame = clock.advance(0.0, Pose::IDENTITY);
-        assert_eq!((frame.reset, frame.sub_steps.len()), (Some(Pose::IDENTITY), 0));
+        assert_eq!((frame.reset, frame.sub_steps.len()), (Some(Quat::IDENTITY), 0));
         clock
     }
 
@@ -295,22 +322,61 @@ mod tests {
     fn the_head_moves_evenly_in_the_first_frame_and_arrives() {
         let mut clock = clock();
         let frame = clock.advance(1.0 / 60.0, moved(0.2));
-        let heads: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.head.translation.x).collect();
-        assert!((heads[0] - 0.1).abs() < 1e-6);
-        assert_eq!(heads[1], 0.2, "the end of the frame is met exactly");
-        assert_eq!(clock.head_lead(), Pose::IDENTITY);
-        // Half of a sub-step: the strands stay, and the renderer is told what they miss.
+        let shifts: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.shift.x).collect();
+        assert!(shifts.iter().all(|shift| (shift - 0.1).abs() < 1e-6), "{shifts:?}");
+        assert_eq!(clock.pose(), moved(0.2), "the end of the frame is met exactly");
+        // Half of a sub-step: the strands stay, and the renderer is told where they are to be.
         let frame = clock.advance(1.0 / 240.0, moved(0.25));
         assert!(frame.sub_steps.is_empty());
-        assert!((clock.head_lead().translation.x - 0.05).abs() < 1e-6);
+        assert_eq!(clock.pose(), moved(0.25));
         let frame = clock.advance(1.0 / 240.0, moved(0.35));
-        assert!((frame.sub_steps[0].motion.translation.x - 0.15).abs() < 1e-6);
+        assert!((frame.sub_steps[0].shift.x - 0.15).abs() < 1e-6);
     }
 
-    /// Places of a head within the frames that bring it to these places.
+    #[test]
+    fn strands_turn_and_move_with_the_head_about_their_centre() {
+        let bounds = Bounds { min: Vec3::new(-0.1, 1.5, -0.1), max: Vec3::new(0.1, 1.7, 0.1) };
+        let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
+        assert!(clock.center().distance(bounds.center()) < 0.01);
+        let head = |angle: f32| Pose { rotation: Quat::from_rotation_z(angle), translation: Vec3::X * angle };
+        clock.advance(0.0, head(0.0));
+        let point = Vec3::new(0.05, 1.55, -0.02);
+        let mut place = (point - clock.center()).as_dvec3();
+        let mut center = clock.center().as_dvec3();
+        for frame in 1..=30 {
+            let head = head(0.02 * frame as f32);
+            for sub_step in clock.advance(1.0 / 60.0, head).sub_steps {
+                place = sub_step.turn.as_dquat() * place;
+                center += sub_step.shift.as_dvec3();
+            }
+            let carried = head.transform(point);
+            assert!((center + place).as_vec3().distance(carried) < 2e-6, "the head carries it to {carried}");
+            assert!(
+                clock.pose().transform(place.as_vec3()).distance(carried) < 1e-6,
+                "and the renderer draws it there"
+            );
+        }
+        // Less than a sub-step later the strands have not turned yet.
+        let head = head(0.605);
+        assert!(clock.advance(1.0 / 240.0, head).sub_steps.is_empty());
+        assert!(clock.pose().transform(place.as_vec3()).distance(head.transform(point)) < 1e-6);
+    }
+
+    /// Places of a head that is in one now, within the frames that bring it to these places.
     fn places(clock: &mut Clock, dt: f64, ends: &[f32]) -> Vec<f32> {
-        let frames = ends.iter().flat_map(|&end| clock.advance(dt, moved(end)).sub_steps);
-        frames.map(|sub_step| sub_step.head.translation.x).collect()
+        let mut place = clock.pose().translation.x;
+        let mut places = Vec::new();
+        for &end in ends {
+            let frame = clock.advance(dt, moved(end));
+            if frame.reset.is_some() {
+                place = end;
+            }
+            for sub_step in frame.sub_steps {
+                place += sub_step.shift.x;
+                places.push(place);
+            }
+        }
+        places
     }
 
     #[test]
@@ -337,7 +403,8 @@ mod tests {
         let head = Pose { rotation: Quat::from_rotation_x(0.3), translation: Vec3::new(0.1, 0.2, 0.3) };
         clock.advance(0.1, head);
         let frame = clock.advance(0.1, head);
-        assert!(frame.sub_steps.iter().all(|sub_step| sub_step.motion == Pose::IDENTITY && sub_step.head == head));
+        assert!(frame.sub_steps.iter().all(|sub_step| sub_step.turn == Quat::IDENTITY && sub_step.shift == Vec3::ZERO));
+        assert!(frame.sub_steps.iter().all(|sub_step| sub_step.rotation == head.rotation));
     }
 
     #[test]

@@ -27,11 +27,11 @@ pub use velocity_shock::velocity_shock;
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]
 pub struct Guide<'a> {
-    /// Rest position and inverse mass of every vertex.
+    /// Rest position about the centre of the groom, and inverse mass, of every vertex.
     pub rest: &'a [Vec4],
     /// Rest length of the edge behind every vertex; 0 at the tip.
     pub rest_lengths: &'a [f32],
-    /// Position of every vertex.
+    /// Position of every vertex, about the centre of the groom.
     pub positions: &'a mut [DVec3],
     /// Position of every vertex one sub-step ago.
     pub previous: &'a mut [DVec3],

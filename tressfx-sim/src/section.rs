@@ -1,11 +1,11 @@
 //! A section: its buffers, its parameters, and the passes that are specialised on them.
 
+use glam::Vec3;
 use tressfx_core::Result;
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Label;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
-use tressfx_core::strands::Strands;
 
 use crate::buffers::SectionBuffers;
 use crate::kernel::Pass;
@@ -17,6 +17,7 @@ use crate::kernel::local_shape::local_shape;
 use crate::kernel::tangents::tangents;
 use crate::kernel::velocity_shock::velocity_shock;
 use crate::params::SimParams;
+use crate::sim::SectionDesc;
 use crate::step::Units;
 
 /// The kernels, in the order in which they run.
@@ -92,14 +93,14 @@ struct Passes {
 impl Section {
     pub(crate) fn new(
         backend: &mut dyn Backend,
-        strands: &Strands,
-        params: SimParams,
+        SectionDesc { strands, params }: &SectionDesc,
+        center: Vec3,
         shared: &Shared,
     ) -> Result<Self> {
-        let buffers = SectionBuffers::new(backend, strands)?;
-        let passes = Passes::new(backend, &buffers, &params, shared)?;
+        let buffers = SectionBuffers::new(backend, strands, center)?;
+        let passes = Passes::new(backend, &buffers, params, shared)?;
         let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
-        Ok(Self { buffers, units, params, passes })
+        Ok(Self { buffers, units, params: params.clone(), passes })
     }
 
     pub(crate) fn params(&self) -> &SimParams {

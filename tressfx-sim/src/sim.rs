@@ -1,5 +1,6 @@
 //! The simulation of a groom.
 
+use glam::{Quat, Vec3};
 use tressfx_core::backend::Backend;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
@@ -42,6 +43,9 @@ pub struct StepReport {
 ///
 /// It makes buffers and pipelines once; after that it only writes passes into a [`PassList`]. Positions stay in the unit of
 /// the file, and head poses are in that unit too; parameters are SI.
+///
+/// Positions on the GPU are about the centre of the groom, on the axes of the world: a groom far from the origin loses no
+/// bits. [`HairSim::pose`] takes them into the world.
 #[derive(Debug)]
 pub struct HairSim {
     sections: Vec<Section>,
@@ -62,7 +66,8 @@ impl HairSim {
     /// A parameter outside its range, or what the backend says.
     pub fn new(backend: &mut dyn Backend, sections: &[SectionDesc], capsules: &[Capsule]) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
-        let bounds = sections.iter().map(|section| section.strands.bounds).reduce(Bounds::union).unwrap_or_default();
+        let bounds =
+            sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
         let clock = Clock::new(ClockParams::default(), bounds)?;
         let mut uploads = Vec::new();
         let shared = Shared {
@@ -73,13 +78,13 @@ impl HairSim {
             non_finite: storage(backend, "hair.non_finite", 4, 1)?,
         };
         if let Some(buffer) = shared.capsules {
-            let capsules: Vec<_> = capsules.iter().map(GpuCapsule::from).collect();
+            let capsules: Vec<_> = capsules.iter().map(|capsule| GpuCapsule::about(clock.center(), capsule)).collect();
             uploads.push(Upload::new(buffer, &capsules));
         }
         let mut made = Vec::with_capacity(sections.len());
-        for SectionDesc { strands, params } in sections {
-            let section = Section::new(backend, strands, params.clone(), &shared)?;
-            uploads.extend(section.buffers.uploads(strands));
+        for desc in sections {
+            let section = Section::new(backend, desc, clock.center(), &shared)?;
+            uploads.extend(section.buffers.uploads(desc.strands));
             made.push(section);
         }
         let strand_buffers = made.iter().map(|section| section.buffers.strands).collect();
@@ -97,8 +102,8 @@ impl HairSim {
             list.upload(buffer, 0, &bytes);
         }
         let frame = self.clock.advance(input.dt, input.head);
-        if let Some(head) = &frame.reset {
-            self.record_reset(list, head);
+        if let Some(rotation) = frame.reset {
+            self.record_reset(list, rotation);
         }
         for sub_step in &frame.sub_steps {
             self.record_sub_step(list, sub_step, input.wind.as_ref());
@@ -130,10 +135,15 @@ impl HairSim {
         self.clock.time()
     }
 
-    /// The rigid motion that the head has made since the last sub-step. A renderer that moves the strands by it keeps the
-    /// roots on the skin at any frame rate.
-    pub fn head_lead(&self) -> Pose {
-        self.clock.head_lead()
+    /// From the positions on the GPU to the world, with what the head has turned since the last sub-step. A renderer that
+    /// draws the strands so keeps the roots on the skin at any frame rate.
+    pub fn pose(&self) -> Pose {
+        self.clock.pose()
+    }
+
+    /// The point of the rest pose that positions are about.
+    pub fn center(&self) -> Vec3 {
+        self.clock.center()
     }
 
     /// What the simulation shares with the rendering, a section each.
@@ -176,7 +186,7 @@ impl HairSim {
     }
 
     /// Brings the positions of all strands back, a ticket each section: `vec4<f32>`, vertex-major over all strands; position
-    /// and inverse mass. [`Strands::deinterleave`] makes them strand-major.
+    /// and inverse mass. [`Strands::deinterleave`] makes them strand-major, and [`HairSim::pose`] takes them to the world.
     pub fn read_positions(&self, list: &mut PassList) -> Vec<Ticket> {
         let read = |buffers: &StrandBuffers| {
             list.read_buffer(buffers.positions, 0, 16 * u64::from(buffers.shape.strand_vertices()))
@@ -222,10 +232,10 @@ impl HairSim {
         self.sections.into_iter().for_each(|section| section.destroy(backend));
     }
 
-    fn record_reset(&mut self, list: &mut PassList, head: &Pose) {
+    fn record_reset(&mut self, list: &mut PassList, rotation: Quat) {
         self.resets += 1;
         for (index, section) in self.sections.iter().enumerate() {
-            self.record_step(list, index, &Step::reset(section.params(), &section.units, head));
+            self.record_step(list, index, &Step::reset(section.params(), &section.units, rotation));
         }
         self.record_stage(list, Stage::Integrate, false);
     }
@@ -234,7 +244,7 @@ impl HairSim {
         for (index, section) in self.sections.iter().enumerate() {
             self.record_step(list, index, &Step::new(section.params(), &section.units, sub_step, wind));
         }
-        let still = sub_step.motion == Pose::IDENTITY;
+        let still = sub_step.turn == Quat::IDENTITY && sub_step.shift == Vec3::ZERO;
         for stage in Stage::SUB_STEP {
             // A head that has not moved gives no shock.
             if !(still && stage == Stage::VelocityShock) {

@@ -9,9 +9,8 @@
 //! * the shock is a share of the head's motion, not of a time, and stays as it is: in any number of sub-steps the strands
 //!   make the same share of the motion at once.
 
-use glam::{Vec3, Vec4};
+use glam::{Quat, Vec3, Vec4};
 use tressfx_core::gpu_struct;
-use tressfx_core::view::Pose;
 
 use crate::clock::SubStep;
 use crate::params::SimParams;
@@ -24,18 +23,15 @@ gpu_struct! {
     /// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one
     /// sub-step.
     pub struct Step {
-        /// Rotation from the rest pose to the world at the end of the sub-step, a unit quaternion.
+        /// From the axes of the rest pose to those of the world: the rotation of the head at the end of the sub-step, a unit
+        /// quaternion.
         pub head_rotation: Vec4,
-        /// The translation that goes with it.
-        pub head_translation: Vec3,
+        /// The rotation that the head made during the sub-step, a unit quaternion.
+        pub turn: Vec4,
+        /// The way that the centre of the groom made with the head during the sub-step. All positions are about that centre.
+        pub shift: Vec3,
         /// Share of the velocity that is kept.
         pub keep: f32,
-        /// Rotation of the head during the sub-step, a unit quaternion.
-        pub motion_rotation: Vec4,
-        /// The translation that goes with it.
-        pub motion_translation: Vec3,
-        /// Share of the head's motion that the strands make at once.
-        pub shock: f32,
         /// Displacement by gravity.
         pub gravity: Vec3,
         /// The longest displacement relative to the head.
@@ -52,10 +48,12 @@ gpu_struct! {
         pub friction: f32,
         /// How much further a follow strand is from its guide at the tip.
         pub tip_separation: f32,
+        /// Share of the head's motion that the strands make at once.
+        pub shock: f32,
         /// Not 0: the strands go to their rest pose, at rest.
         pub reset: u32,
         /// Nothing.
-        pub padding: [u32; 2],
+        pub padding: u32,
     }
 }
 
@@ -76,14 +74,15 @@ pub fn spring_share(stiffness: f32, length: f64) -> f64 {
 }
 
 impl Step {
-    /// The strands go to rest where the head is.
-    pub fn reset(params: &SimParams, units: &Units, head: &Pose) -> Self {
+    /// The strands go to rest on a head that is turned so.
+    pub fn reset(params: &SimParams, units: &Units, rotation: Quat) -> Self {
         let still = SubStep {
             length: REFERENCE_STEP,
             length_ratio: 1.0,
             time: 0.0,
-            head: *head,
-            motion: Pose::IDENTITY,
+            rotation,
+            turn: Quat::IDENTITY,
+            shift: Vec3::ZERO,
             acceleration: 0.0,
         };
         Self { reset: 1, ..Self::new(params, units, &still, None) }
@@ -100,12 +99,10 @@ impl Step {
         let local = spring_share(params.local_stiffness, sub.length);
         let shocked = sub.acceleration * units.metres_per_unit > params.shock_acceleration;
         Self {
-            head_rotation: sub.head.rotation.into(),
-            head_translation: sub.head.translation,
+            head_rotation: sub.rotation.into(),
+            turn: sub.turn.into(),
+            shift: sub.shift,
             keep: ((-60.0 * f64::from(params.damping) * sub.length).exp() * sub.length_ratio) as f32,
-            motion_rotation: sub.motion.rotation.into(),
-            motion_translation: sub.motion.translation,
-            shock: if shocked { 1.0 } else { params.shock },
             gravity: (params.gravity.as_dvec3() * (square / metres)).as_vec3(),
             max_displacement: max_displacement as f32,
             wind: wind.map_or([Vec4::ZERO; 4], |wind| wind.corners(sub.time).map(blow)),
@@ -119,8 +116,9 @@ impl Step {
             local_stiffness: -((-local).ln_1p() / iterations).exp_m1() as f32,
             friction: params.friction,
             tip_separation: params.tip_separation.unwrap_or(units.tip_separation),
+            shock: if shocked { 1.0 } else { params.shock },
             reset: 0,
-            padding: [0; 2],
+            padding: 0,
         }
     }
 }

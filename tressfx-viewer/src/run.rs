@@ -89,17 +89,17 @@ impl Run {
         self.backend.read(ticket).context("the list has run, but a read-back is missing")
     }
 
-    /// Positions of all strands of each section, strand-major.
-    pub(crate) fn pose(&mut self) -> Result<Vec<Vec<Vec4>>> {
+    /// Positions of all strands of each section about the centre of the groom, strand-major.
+    pub(crate) fn positions(&mut self) -> Result<Vec<Vec<Vec4>>> {
         let mut list = PassList::new();
         let tickets = self.sim.read_positions(&mut list);
         self.backend.run(&list)?;
-        let mut poses = Vec::new();
+        let mut sections = Vec::new();
         for (section, ticket) in tickets.into_iter().enumerate() {
             let positions: Vec<Vec4> = bytemuck::pod_collect_to_vec(&self.fetch(ticket)?);
-            poses.push(self.groom.sections[section].deinterleave(&positions));
+            sections.push(self.groom.sections[section].deinterleave(&positions));
         }
-        Ok(poses)
+        Ok(sections)
     }
 
     /// Tells what was asked for: a table of costs, a trace, figures.
@@ -135,12 +135,12 @@ impl Run {
         let ticket = self.sim.read_non_finite(&mut list);
         self.backend.run(&list)?;
         let reset_strands: Vec<u32> = bytemuck::pod_collect_to_vec(&self.fetch(ticket)?);
-        let poses = self.pose()?;
+        let positions = self.positions()?;
         let mut error = EdgeError::default();
         let mut bad = 0;
-        for (strands, pose) in self.groom.sections.iter().zip(&poses) {
-            error = error.with(metrics::edge_error(strands, pose));
-            bad += metrics::non_finite(pose) as u64;
+        for (strands, positions) in self.groom.sections.iter().zip(&positions) {
+            error = error.with(metrics::edge_error(strands, positions));
+            bad += metrics::non_finite(positions) as u64;
         }
         Ok(SimStats {
             max_edge_error: error.max,

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use glam::Vec4;
 use tressfx_core::asset::{self, WriteFormat};
 
 use crate::cli::Simulate;
@@ -25,9 +26,11 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
         progress.advance();
     }
     drop(progress);
-    let poses = run.pose()?;
-    for ((strands, pose), file) in run.groom.sections.iter().zip(&poses).zip(&files) {
-        asset::write(file, &strands.pose_asset(pose, args.all)?, Some(WriteFormat::TressFx4))?;
+    let (positions, pose) = (run.positions()?, run.sim.pose());
+    let in_world = |position: &Vec4| pose.transform(position.truncate()).extend(position.w);
+    for ((strands, positions), file) in run.groom.sections.iter().zip(&positions).zip(&files) {
+        let positions: Vec<Vec4> = positions.iter().map(in_world).collect();
+        asset::write(file, &strands.pose_asset(&positions, args.all)?, Some(WriteFormat::TressFx4))?;
     }
     run.report(&args.scene, RenderStats::default())
 }

@@ -48,20 +48,20 @@ impl Studio {
             sections.push((section, *run.params.material(index)));
         }
         let mut renderer = HairRenderer::new(backend, &RenderDesc { k: args.k, ..RenderDesc::new(args.size, TARGET) })?;
-        renderer.reserve(backend, &view, &draws(&sections, Pose::IDENTITY))?;
+        renderer.reserve(backend, &view, &draws(&sections, run.sim.pose()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth)?;
         backend.run(&uploads)?;
         let (lights, drawn) = (Lights::default(), RenderStats::default());
         Ok(Self { targets, drawn, view, lights, scene, meshes, sections, renderer })
     }
 
-    /// Records a picture with the head at `head`; the strands are moved by `lead`, see `HairSim::head_lead`.
-    pub(crate) fn draw(&self, list: &mut PassList, head: Pose, lead: Pose) -> Ticket {
+    /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
+    pub(crate) fn draw(&self, list: &mut PassList, head: Pose, pose: Pose) -> Ticket {
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
         let Self { view, lights, targets, .. } = self;
         self.scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
-        self.renderer.draw(list, view, lights, targets, &draws(&self.sections, lead));
+        self.renderer.draw(list, view, lights, targets, &draws(&self.sections, pose));
         self.renderer.read_counters(list)
     }
 
@@ -83,7 +83,7 @@ impl Studio {
     /// Draws the newest frame once more, and brings the picture.
     pub(crate) fn retake(&mut self, run: &mut Run, args: &cli::Scene) -> Result<Vec<u8>> {
         let mut list = PassList::new();
-        let counters = self.draw(&mut list, run.head(args), run.sim.head_lead());
+        let counters = self.draw(&mut list, run.head(args), run.sim.pose());
         let picture = list.read_texture(self.targets.color);
         run.submit(&list)?;
         self.take_stock(run, counters)?;

@@ -24,7 +24,6 @@ macro_rules! each_case {
                 a_read_back_is_given_once: [ReadBack];
                 a_ticket_that_nobody_ran_gives_nothing: [];
                 new_buffers_are_zero: [ReadBack];
-                new_textures_are_zero: [ReadBack Raster];
                 an_empty_read_back_is_empty: [ReadBack];
                 what_follows_a_destroyed_buffer_is_zero: [ReadBack];
                 an_empty_list_runs: [];
@@ -127,6 +126,7 @@ macro_rules! each_case {
                 no_vertices_and_no_instances_draw_nothing: [Raster ReadBack];
             }
             formats {
+                new_textures_are_zero: [Raster ReadBack];
                 rgba8: [Raster ReadBack];
                 rgba8_srgb: [Raster ReadBack];
                 bgra8: [Raster ReadBack];

@@ -110,13 +110,6 @@ pub(super) fn new_buffers_are_zero(t: &mut Subject) {
     }
 }
 
-pub(super) fn new_textures_are_zero(t: &mut Subject) {
-    for format in [Format::Rgba8, Format::Bgra8Srgb, Format::Rgba16F, Format::Depth32F] {
-        let fresh = t.texture([65, 33], format);
-        assert!(t.texels(fresh).iter().all(|&byte| byte == 0), "{format:?}");
-    }
-}
-
 pub(super) fn an_empty_read_back_is_empty(t: &mut Subject) {
     let values = t.storage(&[7; 4]);
     let ticket = t.list.read_buffer(values, 8, 0);

@@ -67,6 +67,13 @@ fn cleared_and_drawn(t: &mut Subject, format: Format) {
     }
 }
 
+pub(super) fn new_textures_are_zero(t: &mut Subject) {
+    for format in [Format::Rgba8, Format::Bgra8Srgb, Format::Rgba16F, Format::Depth32F] {
+        let fresh = t.texture([65, 33], format);
+        assert!(t.texels(fresh).iter().all(|&byte| byte == 0), "{format:?}");
+    }
+}
+
 pub(super) fn rgba8(t: &mut Subject) {
     cleared_and_drawn(t, Format::Rgba8);
 }

@@ -4,7 +4,6 @@ use glam::{DVec3, EulerRot, Quat, Vec3};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
-use tressfx_core::view::Pose;
 use tressfx_render::{Material, reference as picture};
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{Step, Units};
@@ -32,23 +31,28 @@ fn capsules(strands: &Strands) -> Vec<Capsule> {
 
 /// A sub-step in which everything happens, and nothing moves further than the shortest edge is long.
 fn step(strands: &Strands) -> Step {
-    let motion = Pose {
-        rotation: Quat::from_euler(EulerRot::XYZ, 0.003, -0.002, 0.004),
-        translation: Vec3::new(0.0003, -0.0004, 0.0005),
+    let turn = Quat::from_euler(EulerRot::XYZ, 0.003, -0.002, 0.004);
+    let sub_step = SubStep {
+        length: 1.0 / 240.0,
+        length_ratio: 1.0,
+        time: 0.7,
+        rotation: turn * Motion::wild(strands).head(0.1).rotation,
+        turn,
+        shift: Vec3::new(0.0003, -0.0004, 0.0005),
+        acceleration: 0.0,
     };
-    let head = motion.after(&Motion::wild(strands).head(0.1));
-    let sub_step = SubStep { length: 1.0 / 240.0, length_ratio: 1.0, time: 0.7, head, motion, acceleration: 0.0 };
     let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
     Step::new(&params(), &units, &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
 }
 
-/// Random strands that have moved for a while, and a step for them.
+/// Random strands that have moved for a while, a step for them, and capsules about their centre.
 fn moved(t: &Subject) -> (Rig, Step, Vec<Capsule>) {
     let strands = random_strands(24, 12, 1, 9);
     let (step, capsules, motion) = (step(&strands), capsules(&strands), Motion::wild(&strands));
     let mut rig = Rig::new(t.another(), vec![(strands, params())], &capsules);
     rig.play(&motion, 0.1, 60);
-    (rig, step, capsules)
+    let centred = capsules.iter().map(|capsule| rig.centred(capsule)).collect();
+    (rig, step, centred)
 }
 
 /// Positions and previous positions of the guides.
@@ -65,14 +69,14 @@ fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32
         sim.record_step(list, 0, &step);
         sim.record_stage(list, kernel, true);
     });
-    let found = (rig.positions(0), rig.previous(0));
+    let (found, rest) = ((rig.positions(0), rig.previous(0)), rig.rest(0));
     let strands = &rig.strands[0];
     let [mut positions, mut previous] = before.clone();
     for guide in 0..strands.guides {
         let start = (guide * strands.vertices) as usize;
         let range = start..start + strands.vertices as usize;
         let mut of_guide = Guide {
-            rest: &strands.rest[range.clone()],
+            rest: &rest[range.clone()],
             rest_lengths: &strands.rest_lengths[range.clone()],
             positions: &mut positions[range.clone()],
             previous: &mut previous[range],

@@ -1,5 +1,6 @@
 //! `hair.sim.collide`: strands leave the capsules and slide on them.
 
+use glam::Vec3;
 use tressfx_core::Result;
 use tressfx_core::backend::Backend;
 use tressfx_core::gpu_struct;
@@ -20,19 +21,20 @@ gpu_struct! {
     /// A [`Capsule`] as the kernel reads it.
     pub(crate) struct GpuCapsule {
         /// Centre of one end.
-        pub a: glam::Vec3,
+        pub a: Vec3,
         /// Radius there.
         pub radius_a: f32,
         /// Centre of the other end.
-        pub b: glam::Vec3,
+        pub b: Vec3,
         /// Radius there.
         pub radius_b: f32,
     }
 }
 
-impl From<&Capsule> for GpuCapsule {
-    fn from(&Capsule { a, b, radius_a, radius_b }: &Capsule) -> Self {
-        Self { a, radius_a, b, radius_b }
+impl GpuCapsule {
+    /// About the centre of the groom.
+    pub(crate) fn about(center: Vec3, &Capsule { a, b, radius_a, radius_b }: &Capsule) -> Self {
+        Self { a: a - center, radius_a, b: b - center, radius_b }
     }
 }
 

@@ -33,8 +33,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
             let depth = (point - start).dot(normal).max(0.0);
             let displacement = point - step.in_head(step.carry(guide.previous[i]));
             let kept = slid(displacement, normal, depth, f64::from(step.friction));
-            let past = step.in_world(point - kept) - step.motion_translation.as_dvec3();
-            guide.previous[i] = rotate_back(step.motion_rotation.as_dvec4(), past);
+            guide.previous[i] = step.carry_back(step.in_world(point - kept));
             guide.positions[i] = step.in_world(point);
             moved = true;
         }

@@ -16,7 +16,8 @@ pub fn integrate(step: &Step, guide: &mut Guide) {
             guide.previous[i] = shape;
             continue;
         }
-        let (here, before) = (guide.positions[i], guide.previous[i]);
+        // Both are about where the centre was at the end of the last sub-step.
+        let [here, before] = [guide.positions[i], guide.previous[i]].map(|point| point - step.shift.as_dvec3());
         let mut goal = here + f64::from(step.keep) * bounded(step, here - before, before) + step.gravity.as_dvec3();
         if step.global_stiffness > 0.0 {
             let along = i as f64 / last / f64::from(step.global_range);

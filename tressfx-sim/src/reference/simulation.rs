@@ -1,8 +1,8 @@
 //! A whole groom in f64.
 
-use glam::DVec3;
+use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{Bounds, Strands};
+use tressfx_core::strands::{Bounds, Strands, about};
 
 use super::{Guide, collide, follow, integrate, length, local_shape, velocity_shock};
 use crate::clock::{Clock, ClockParams, StepInput};
@@ -23,6 +23,8 @@ pub struct Simulation<'a> {
 #[derive(Debug)]
 struct Section<'a> {
     strands: &'a Strands,
+    /// About the centre of the groom.
+    rest: Vec<Vec4>,
     params: SimParams,
     units: Units,
     step: Step,
@@ -37,11 +39,15 @@ impl<'a> Simulation<'a> {
     /// A parameter outside its range.
     pub fn new(sections: &[SectionDesc<'a>], capsules: &[Capsule]) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
-        let bounds = sections.iter().map(|section| section.strands.bounds).reduce(Bounds::union).unwrap_or_default();
+        let bounds =
+            sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
+        let clock = Clock::new(ClockParams::default(), bounds)?;
+        let center = clock.center();
+        let about = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
         Ok(Self {
-            sections: sections.iter().map(Section::new).collect(),
-            capsules: capsules.to_vec(),
-            clock: Clock::new(ClockParams::default(), bounds)?,
+            sections: sections.iter().map(|section| Section::new(section, center)).collect(),
+            capsules: capsules.iter().map(about).collect(),
+            clock,
             non_finite: 0,
         })
     }
@@ -62,8 +68,8 @@ impl<'a> Simulation<'a> {
         input.validate()?;
         let frame = self.clock.advance(input.dt, input.head);
         for section in &mut self.sections {
-            if let Some(head) = &frame.reset {
-                section.step = Step::reset(&section.params, &section.units, head);
+            if let Some(rotation) = frame.reset {
+                section.step = Step::reset(&section.params, &section.units, rotation);
                 section.each_guide(|step, _, _, guide| integrate(step, guide));
             }
             for sub_step in &frame.sub_steps {
@@ -79,7 +85,7 @@ impl<'a> Simulation<'a> {
         })
     }
 
-    /// Positions of all strands of a section, strand-major.
+    /// Positions of all strands of a section about the centre of the groom, strand-major.
     ///
     /// # Panics
     /// If there is no such section.
@@ -100,14 +106,15 @@ impl<'a> Simulation<'a> {
 }
 
 impl<'a> Section<'a> {
-    fn new(desc: &SectionDesc<'a>) -> Self {
+    fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
         let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
         Self {
             strands,
+            rest: about(center, &strands.rest),
             params: desc.params.clone(),
             units,
-            step: Step::reset(&desc.params, &units, &tressfx_core::view::Pose::IDENTITY),
+            step: Step::reset(&desc.params, &units, Quat::IDENTITY),
             positions: vec![DVec3::ZERO; strands.rest.len()],
             previous: vec![DVec3::ZERO; strands.rest.len()],
         }
@@ -130,7 +137,7 @@ impl<'a> Section<'a> {
 
     fn each_guide(&mut self, mut visit: impl FnMut(&Step, &SimParams, u32, &mut Guide)) {
         let vertices = self.strands.vertices as usize;
-        let rest = self.strands.rest.chunks(vertices).zip(self.strands.rest_lengths.chunks(vertices));
+        let rest = self.rest.chunks(vertices).zip(self.strands.rest_lengths.chunks(vertices));
         let moving = self.positions.chunks_mut(vertices).zip(self.previous.chunks_mut(vertices));
         for (index, ((rest, rest_lengths), (positions, previous))) in rest.zip(moving).enumerate() {
             let mut guide = Guide { rest, rest_lengths, positions, previous };

@@ -36,19 +36,24 @@ pub(super) fn turned(rotation: DVec4, u: DVec3, v: DVec3) -> DVec4 {
 }
 
 impl Step {
-    /// A point of the rest pose, carried by the head.
+    /// A point of the rest pose, turned by the head.
     pub(super) fn in_world(&self, point: DVec3) -> DVec3 {
-        rotate(self.head_rotation.as_dvec4(), point) + self.head_translation.as_dvec3()
+        rotate(self.head_rotation.as_dvec4(), point)
     }
 
-    /// A point of the world, in the space of the rest pose.
+    /// A point of the world, as the head sees it.
     pub(super) fn in_head(&self, point: DVec3) -> DVec3 {
-        rotate_back(self.head_rotation.as_dvec4(), point - self.head_translation.as_dvec3())
+        rotate_back(self.head_rotation.as_dvec4(), point)
     }
 
     /// A point as the head's motion during the sub-step moves it.
     pub(super) fn carry(&self, point: DVec3) -> DVec3 {
-        rotate(self.motion_rotation.as_dvec4(), point) + self.motion_translation.as_dvec3()
+        rotate(self.turn.as_dvec4(), point + self.shift.as_dvec3())
+    }
+
+    /// The point that [`Step::carry`] takes to this one.
+    pub(super) fn carry_back(&self, point: DVec3) -> DVec3 {
+        rotate_back(self.turn.as_dvec4(), point) - self.shift.as_dvec3()
     }
 }
 
