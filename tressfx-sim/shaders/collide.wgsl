@@ -28,8 +28,9 @@ const FAR: f32 = 1e30;
 /// Of a clearance, what rounding leaves certain.
 const CERTAIN: f32 = 0.999;
 
-/// `clear` is how far the point is from all capsules, if it has not touched any.
-struct Contact { point: vec3<f32>, touched: bool, normal: vec3<f32>, clear: f32 }
+/// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. `clear`
+/// is how far the point is from all capsules, if it has not touched any.
+struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32 }
 
 @compute @workgroup_size(GROUP)
 fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -54,10 +55,11 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
             let length = rest_lengths[(i - 1u) * GUIDES + strand];
             if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
             let heading = rotate_back(step.head_rotation, vertex.xyz - old_parent);
-            let contact = resolved(in_head(parent), in_head(point), length, heading);
+            let contact = resolved(in_head(parent), in_head(point), length, heading, i * GUIDES + strand);
             if (contact.touched) {
-                rub(i * GUIDES + strand, contact, in_head(point));
                 point = in_world(contact.point);
+                let past = rotate_back(step.turn, in_world(contact.point - contact.kept)) - step.shift;
+                previous[i * GUIDES + strand] = vec4(past, 0.0);
             }
             moved = moved || contact.touched;
             clear = CERTAIN * contact.clear;
@@ -70,8 +72,11 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
 }
 
-/// Where a vertex is when it has left all capsules. `heading` is the way that its edge had.
-fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>) -> Contact {
+/// Where a vertex is when it has left all capsules. `heading` is the way that its edge had, `past` the place of its past.
+///
+/// Every contact takes its share of the velocity, as deep as it is. Between two capsules a vertex is turned back and forth, and
+/// which one is the last hangs on a rounding.
+fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>, past: u32) -> Contact {
     var contact = Contact(start, false, vec3(0.0), 0.0);
     var way = heading;
     for (var round = 0u; round < ROUNDS; round++) {
@@ -82,9 +87,12 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
             let from_center = contact.point - sphere.xyz;
             clear = min(clear, clearance(capsules[i], contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
+                if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz)); }
                 let turn = turned_out(parent, way, length, sphere);
+                let pushed = turn.point - contact.point;
+                let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
+                contact.kept = slid(contact.kept + pushed, normal, max(dot(pushed, normal), 0.0), step.friction);
                 contact.point = turn.point;
-                contact.normal = direction_or(contact.point - sphere.xyz, contact.normal);
                 contact.touched = true;
                 // Between two capsules it is turned back and forth until it is out of both.
                 way = contact.point - parent;
@@ -99,14 +107,9 @@ fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>
     return contact;
 }
 
-/// Changes the past of a vertex, so that its velocity is what friction leaves of it. Seen from the head, which carries the
-/// capsules.
-fn rub(i: u32, contact: Contact, start: vec3<f32>) {
-    let carried = rotate(step.turn, previous[i].xyz + step.shift);
-    let depth = max(dot(contact.point - start, contact.normal), 0.0);
-    let displacement = slid(contact.point - in_head(carried), contact.normal, depth, step.friction);
-    let past = rotate_back(step.turn, in_world(contact.point - displacement)) - step.shift;
-    previous[i] = vec4(past, 0.0);
+/// Where the head's motion takes a point. It carries the capsules.
+fn carried(point: vec3<f32>) -> vec3<f32> {
+    return rotate(step.turn, point + step.shift);
 }
 
 fn in_head(point: vec3<f32>) -> vec3<f32> {

@@ -28,6 +28,10 @@ const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
 /// Share of a vertex's placement that its parent's velocity answers for. The parent does not move when its child is placed;
 /// with no reaction at all strands gain energy without end, and at 1 it is never lost.
 const REACTION: f32 = 0.9;
+/// Share by which the way of a vertex is drawn to the mean of its neighbours'. Nothing else ends the zigzag from vertex to vertex
+/// in which strands that gravity compresses would tremble for ever. What a strand's longest bend loses by it is a hundredth in a
+/// sub-step, or less.
+const SMOOTHING: f32 = min(0.25, f32(VERTICES * VERTICES) / 1000.0);
 
 @compute @workgroup_size(GROUP)
 fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -40,8 +44,11 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     // Vertex `t - k` in `window[k]`, and in `lengths[k]` its rest length from its parent.
     var window: array<vec4<f32>, SWEEPS + 1u>;
     var lengths: array<f32, SWEEPS + 1u>;
-    // The last vertex that was placed.
+    // The last vertex that was placed, where it was before the sub-step, and the ways that it and the one before it have made.
     var parent = vec4(0.0);
+    var parent_past = vec3(0.0);
+    var parent_way = vec3(0.0);
+    var before_parent_way = vec3(0.0);
     var direction = DOWN;
     var finite = true;
     for (var start = 0u; start < VERTICES + SWEEPS; start += CHUNK) {
@@ -53,7 +60,7 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
         }
         for (var i = 0u; i < CHUNK; i++) {
             from_parent[i] = rest_lengths[(clamp(start + i, 1u, VERTICES - 1u) - 1u) * GUIDES + strand];
-            past[i] = previous[(clamp(start + i, SWEEPS + 1u, VERTICES + SWEEPS) - SWEEPS - 1u) * GUIDES + strand].xyz;
+            past[i] = previous[(clamp(start + i, SWEEPS, VERTICES + SWEEPS - 1u) - SWEEPS) * GUIDES + strand].xyz;
         }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
@@ -77,16 +84,23 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
             }
             if (t >= SWEEPS && t < VERTICES + SWEEPS) {
                 let placed = t - SWEEPS;
-                var vertex = window[SWEEPS];
+                let swept = window[SWEEPS];
+                var vertex = swept;
                 if (placed > 0u) {
-                    direction = direction_or(vertex.xyz - parent.xyz, direction);
-                    let goal = select(vertex.xyz, parent.xyz + lengths[SWEEPS] * direction, vertex.w > 0.0);
-                    if (parent.w > 0.0) {
-                        let moved = goal - vertex.xyz;
-                        previous[(placed - 1u) * GUIDES + strand] = vec4(past[i] + REACTION * moved, 0.0);
-                    }
-                    vertex = vec4(goal, vertex.w);
+                    direction = direction_or(swept.xyz - parent.xyz, direction);
+                    let goal = parent.xyz + lengths[SWEEPS] * direction;
+                    vertex = vec4(select(swept.xyz, goal, swept.w > 0.0), swept.w);
                 }
+                let way = vertex.xyz - past[i];
+                if (placed > 0u && parent.w > 0.0) {
+                    let zigzag = before_parent_way - parent_way + select(vec3(0.0), way - parent_way, vertex.w > 0.0);
+                    let answer = REACTION * (vertex.xyz - swept.xyz) - SMOOTHING * zigzag;
+                    previous[(placed - 1u) * GUIDES + strand] = vec4(parent_past + answer, 0.0);
+                }
+                // A pinned vertex has no way of its own: its child has one neighbour.
+                before_parent_way = select(way, parent_way, parent.w > 0.0);
+                parent_way = way;
+                parent_past = past[i];
                 parent = vertex;
                 finite = finite && is_finite(parent.xyz);
                 positions[placed * STRANDS + strand] = parent;

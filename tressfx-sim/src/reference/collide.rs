@@ -29,10 +29,9 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
             guide.positions[i] = parent + length * direction_or(guide.positions[i] - parent, DVec3::NEG_Y);
         }
         let start = step.in_head(guide.positions[i]);
-        if let Some((point, normal)) = resolved(capsules, step.in_head(parent), start, length, heading) {
-            let depth = (point - start).dot(normal).max(0.0);
-            let displacement = point - step.in_head(step.carry(guide.previous[i]));
-            let kept = slid(displacement, normal, depth, f64::from(step.friction));
+        let way = start - step.in_head(step.carry(guide.previous[i]));
+        let vertex = Vertex { parent: step.in_head(parent), start, length, heading, way };
+        if let Some((point, kept)) = resolved(capsules, &vertex, f64::from(step.friction)) {
             guide.previous[i] = step.carry_back(step.in_world(point - kept));
             guide.positions[i] = step.in_world(point);
             moved = true;
@@ -40,21 +39,34 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
     }
 }
 
-/// Where a vertex is when it has left all capsules, and the last surface's normal; `None` if it was outside. `heading` is
-/// the way that its edge had.
-fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, heading: DVec3) -> Option<(DVec3, DVec3)> {
-    let mut point = start;
-    let mut normal = None;
-    let mut way = heading;
+/// A vertex as the head sees it.
+struct Vertex {
+    parent: DVec3,
+    start: DVec3,
+    /// Of the edge from the parent.
+    length: f64,
+    /// The way that the edge had.
+    heading: DVec3,
+    /// What it has made in the sub-step.
+    way: DVec3,
+}
+
+/// Where a vertex is when it has left all capsules, and what they have left of its way; `None` if it was outside.
+fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVec3, DVec3)> {
+    let (mut point, mut heading, mut kept) = (vertex.start, vertex.heading, vertex.way);
+    let mut touched = false;
     for _ in 0..ROUNDS {
         let mut again = false;
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < INSIDE * radius * radius {
-                let (turned, out) = turned_out(parent, way, length, center, radius);
+                let (turned, out) = turned_out(vertex.parent, heading, vertex.length, center, radius);
+                let pushed = turned - point;
+                let normal = direction_or(turned - center, DVec3::ZERO);
+                kept = slid(kept + pushed, normal, pushed.dot(normal).max(0.0), friction);
                 point = turned;
-                normal = Some(direction_or(point - center, normal.unwrap_or(DVec3::ZERO)));
-                way = point - parent;
+                heading = point - vertex.parent;
+                touched = true;
                 again |= out;
             }
         }
@@ -62,7 +74,7 @@ fn resolved(capsules: &[Capsule], parent: DVec3, start: DVec3, length: f64, head
             break;
         }
     }
-    normal.map(|normal| (point, normal))
+    touched.then_some((point, kept))
 }
 
 fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {

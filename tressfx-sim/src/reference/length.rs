@@ -9,8 +9,8 @@ use crate::step::Step;
 const DOWN: DVec3 = DVec3::NEG_Y;
 const REACTION: f64 = 0.9;
 
-/// Wind, then `sweeps` sweeps of the distance constraints, then exact lengths from the root to the tip. Says whether the
-/// strand was non-finite and had to be reset. `strand` is the index of the guide: its wind depends on it.
+/// Wind, then `sweeps` sweeps of the distance constraints, then exact lengths from the root to the tip, which velocities answer
+/// for. Says whether the strand was non-finite and had to be reset. `strand` is the index of the guide: its wind depends on it.
 pub fn length(step: &Step, guide: &mut Guide, strand: u32, sweeps: u32) -> bool {
     blow(guide, wind_of(step, strand));
     for _ in 0..sweeps {
@@ -19,11 +19,7 @@ pub fn length(step: &Step, guide: &mut Guide, strand: u32, sweeps: u32) -> bool 
     let last = guide.vertices() - 1;
     let swept = guide.positions.to_vec();
     pull(guide, (0..=last).collect());
-    for i in 0..last {
-        if !guide.is_pinned(i) {
-            guide.previous[i] += REACTION * (guide.positions[i + 1] - swept[i + 1]);
-        }
-    }
+    answer(guide, &swept);
     if guide.is_pinned(last) {
         for _ in 0..4 {
             pull(guide, (0..=last).rev().collect());
@@ -64,6 +60,19 @@ fn sweep(guide: &mut Guide) {
         let correction = edge * ((1.0 - f64::from(guide.rest_lengths[i]) / edge.length()) / (a + b));
         guide.positions[i] += a * correction;
         guide.positions[i + 1] -= b * correction;
+    }
+}
+
+/// Velocities answer for the placing of the vertices, and are drawn to the mean of their neighbours'.
+fn answer(guide: &mut Guide, swept: &[DVec3]) {
+    let vertices = guide.vertices();
+    let smoothing = ((vertices * vertices) as f64 / 1000.0).min(0.25);
+    let ways: Vec<DVec3> = (0..vertices).map(|i| guide.positions[i] - guide.previous[i]).collect();
+    let free: Vec<bool> = (0..vertices).map(|i| !guide.is_pinned(i)).collect();
+    for i in (0..vertices - 1).filter(|&i| free[i]) {
+        let neighbours = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter(|&j| free[j]);
+        let zigzag: DVec3 = neighbours.map(|j| ways[j] - ways[i]).sum();
+        guide.previous[i] += REACTION * (guide.positions[i + 1] - swept[i + 1]) - smoothing * zigzag;
     }
 }
 
