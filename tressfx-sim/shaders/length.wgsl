@@ -41,6 +41,9 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     @if(wind) let wind = wind_of(step, strand);
     @if(wind) var blown_edge = DOWN;
 
+    // Inside of the walk positions are about the root, so that roundings are those of so small a thing as a strand: where a
+    // vertex has come close to its parent, they grow by what the edge is short.
+    var root = vec3(0.0);
     // Vertex `t - k` in `window[k]`, and in `lengths[k]` its rest length from its parent.
     var window: array<vec4<f32>, SWEEPS + 1u>;
     var lengths: array<f32, SWEEPS + 1u>;
@@ -62,13 +65,14 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
             from_parent[i] = rest_lengths[(clamp(start + i, 1u, VERTICES - 1u) - 1u) * GUIDES + strand];
             past[i] = previous[(clamp(start + i, SWEEPS, VERTICES + SWEEPS - 1u) - SWEEPS) * GUIDES + strand].xyz;
         }
+        if (start == 0u) { root = here[0].xyz; }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
             for (var k = SWEEPS; k > 0u; k--) {
                 window[k] = window[k - 1u];
                 lengths[k] = lengths[k - 1u];
             }
-            window[0] = here[i];
+            window[0] = vec4(here[i].xyz - root, here[i].w);
             lengths[0] = from_parent[i];
             @if(wind) {
                 // The tip has no edge of its own and takes the last one's.
@@ -91,7 +95,7 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
                     let goal = parent.xyz + lengths[SWEEPS] * direction;
                     vertex = vec4(select(swept.xyz, goal, swept.w > 0.0), swept.w);
                 }
-                let way = vertex.xyz - past[i];
+                let way = vertex.xyz - (past[i] - root);
                 if (placed > 0u && parent.w > 0.0) {
                     let zigzag = before_parent_way - parent_way + select(vec3(0.0), way - parent_way, vertex.w > 0.0);
                     let answer = REACTION * (vertex.xyz - swept.xyz) - SMOOTHING * zigzag;
@@ -102,8 +106,9 @@ fn length(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
                 parent_way = way;
                 parent_past = past[i];
                 parent = vertex;
-                finite = finite && is_finite(parent.xyz);
-                positions[placed * STRANDS + strand] = parent;
+                let world = root + parent.xyz;
+                finite = finite && is_finite(world);
+                positions[placed * STRANDS + strand] = vec4(world, parent.w);
             }
         }
     }

@@ -24,14 +24,16 @@ fn walk(strand: u32) {
     // What the strand has turned so far. It starts as the head does, and each edge adds the smallest turn that explains it:
     // so a curl that is turned as a whole is still the same curl.
     var frame = step.head_rotation;
-    var here = positions[strand];
-    var next = positions[STRANDS + strand];
+    // Positions are about the root, see `length`.
+    let root = positions[strand].xyz;
+    var here = vec4(vec3(0.0), positions[strand].w);
+    var next = about(root, positions[STRANDS + strand]);
     var rest_here = rest[strand].xyz;
     var rest_next = rest[GUIDES + strand].xyz;
     for (var i = 0u; i < VERTICES - 1u; i++) {
         // Loaded before this vertex is stored: loads behind a store to the same buffer would wait for it.
         let ahead = min(i + 2u, VERTICES - 1u);
-        let position_ahead = positions[ahead * STRANDS + strand];
+        let position_ahead = about(root, positions[ahead * STRANDS + strand]);
         let rest_ahead = rest[ahead * GUIDES + strand].xyz;
 
         let goal = rotate(frame, rest_next - rest_here);
@@ -40,7 +42,7 @@ fn walk(strand: u32) {
         let correction = share * (goal - (next.xyz - here.xyz));
         here -= vec4(here.w * correction, 0.0);
         next += vec4(next.w * correction, 0.0);
-        positions[i * STRANDS + strand] = here;
+        positions[i * STRANDS + strand] = about(-root, here);
 
         // An edge without a length turns nothing.
         let edge = next.xyz - here.xyz;
@@ -53,5 +55,9 @@ fn walk(strand: u32) {
         rest_here = rest_next;
         rest_next = rest_ahead;
     }
-    positions[(VERTICES - 1u) * STRANDS + strand] = here;
+    positions[(VERTICES - 1u) * STRANDS + strand] = about(-root, here);
+}
+
+fn about(origin: vec3<f32>, position: vec4<f32>) -> vec4<f32> {
+    return vec4(position.xyz - origin, position.w);
 }
