@@ -26,6 +26,8 @@ const GROWTH: f32 = 4.0;
 /// A strand that points straight at a centre counts as so far off, as a share of its parent's distance and to whatever side:
 /// else it would never get out. It is what positions can just tell.
 const TILT: f32 = 1e-7;
+/// Sine of an angle of which rounding leaves no side: what is left of two unit vectors there may lie along them.
+const ALIGNED: f32 = 5e-7;
 
 /// Where a vertex has been turned to, and whether it is out.
 struct Turn { point: vec3<f32>, out: bool }
@@ -69,7 +71,7 @@ fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f
         cosine = old_cosine * part.y + old_sine * part.x;
         sine = old_sine * part.y - old_cosine * part.x;
     }
-    let sideways = direction_or(across_outwards, across(outwards));
+    let sideways = select(across_outwards / old_sine, across(outwards), old_sine < ALIGNED);
     return Turn(parent + length * (cosine * outwards + sine * sideways), whole || !inside);
 }
 
