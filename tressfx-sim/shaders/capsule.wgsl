@@ -26,8 +26,6 @@ const GROWTH: f32 = 4.0;
 /// A strand that points straight at a centre counts as so far off, as a share of its parent's distance and to whatever side:
 /// else it would never get out. It is what positions can just tell.
 const TILT: f32 = 1e-7;
-/// Sine of an angle of which rounding leaves no side: what is left of two unit vectors there may lie along them.
-const ALIGNED: f32 = 5e-7;
 
 /// Where a vertex has been turned to, and whether it is out.
 struct Turn { point: vec3<f32>, out: bool }
@@ -48,7 +46,10 @@ fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f
     let before = direction_or(heading, outwards);
     // Cosines and sines are those of the angle between `outwards` and the edge.
     let old_cosine = dot(before, outwards);
-    let across_outwards = before - old_cosine * outwards;
+    // Twice: what rounding leaves of two directions that are nearly one lies along them as likely as across, and a turn to that
+    // side would be none.
+    var across_outwards = before - old_cosine * outwards;
+    across_outwards -= dot(across_outwards, outwards) * outwards;
     let old_sine = sqrt(dot(across_outwards, across_outwards));
     // On the sphere, from the sides; the sine as Heron has it, since a square root of 1 minus the squared cosine would lose
     // half of the digits where the angle is small.
@@ -71,7 +72,7 @@ fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f
         cosine = old_cosine * part.y + old_sine * part.x;
         sine = old_sine * part.y - old_cosine * part.x;
     }
-    let sideways = select(across_outwards / old_sine, across(outwards), old_sine < ALIGNED);
+    let sideways = direction_or(across_outwards, across(outwards));
     return Turn(parent + length * (cosine * outwards + sine * sideways), whole || !inside);
 }
 

@@ -11,7 +11,6 @@ const ROUNDS: u32 = 8;
 const INSIDE: f64 = 0.999999;
 const GROWTH: f64 = 4.0;
 const TILT: f64 = 1e-7;
-const ALIGNED: f64 = 5e-7;
 
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
 pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
@@ -111,7 +110,7 @@ fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius:
         let (sin, cos) = (turn.signum() * bound).sin_cos();
         (cosine, sine) = (old_cosine * cos + old_sine * sin, old_sine * cos - old_cosine * sin);
     }
-    let sideways = if old_sine < ALIGNED { across(outwards) } else { across_outwards / old_sine };
+    let sideways = direction_or(across_outwards, across(outwards));
     (parent + length * (cosine * outwards + sine * sideways), whole || turn <= 0.0)
 }
 
