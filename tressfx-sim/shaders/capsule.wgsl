@@ -4,6 +4,11 @@ import package::vector::{across, direction_or};
 
 struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
 
+/// A capsule about an origin.
+fn about(origin: vec3<f32>, capsule: GpuCapsule) -> GpuCapsule {
+    return GpuCapsule(capsule.a - origin, capsule.radius_a, capsule.b - origin, capsule.radius_b);
+}
+
 /// The point of the axis that is nearest to `point`, and the radius there.
 fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
     let axis = capsule.b - capsule.a;

@@ -5,7 +5,7 @@
 //
 // A vertex that is so far from all capsules that the next ones cannot have got there is the last to be looked at for a while.
 
-import package::capsule::{GpuCapsule, clearance, nearest, slid, turned_out};
+import package::capsule::{GpuCapsule, about, clearance, nearest, slid, turned_out};
 import package::constants::{GUIDES, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
@@ -37,8 +37,10 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
            @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= GUIDES) { return; }
+    // Contacts are found about the root, so that roundings are those of what is near, see `length`.
+    let root = positions[strand].xyz;
     // The parent before and after this kernel.
-    var old_parent = positions[strand].xyz;
+    var old_parent = root;
     var parent = old_parent;
     var moved = false;
     var clear = 0.0;
@@ -55,10 +57,10 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
             let length = rest_lengths[(i - 1u) * GUIDES + strand];
             if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
             let heading = rotate_back(step.head_rotation, vertex.xyz - old_parent);
-            let contact = resolved(in_head(parent), in_head(point), length, heading, i * GUIDES + strand);
+            let contact = resolved(root, in_head(parent - root), in_head(point - root), length, heading, i * GUIDES + strand);
             if (contact.touched) {
-                point = in_world(contact.point);
-                let past = rotate_back(step.turn, in_world(contact.point - contact.kept)) - step.shift;
+                point = root + in_world(contact.point);
+                let past = rotate_back(step.turn, root + in_world(contact.point - contact.kept)) - step.shift;
                 previous[i * GUIDES + strand] = vec4(past, 0.0);
             }
             moved = moved || contact.touched;
@@ -72,22 +74,25 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
 }
 
-/// Where a vertex is when it has left all capsules. `heading` is the way that its edge had, `past` the place of its past.
+/// Where a vertex is when it has left all capsules, about the root and seen from the head. `heading` is the way that its edge had,
+/// `past` the place of its past.
 ///
 /// Every contact takes its share of the velocity, as deep as it is. Between two capsules a vertex is turned back and forth, and
 /// which one is the last hangs on a rounding.
-fn resolved(parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>, past: u32) -> Contact {
+fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>, past: u32) -> Contact {
+    let origin = in_head(root);
     var contact = Contact(start, false, vec3(0.0), 0.0);
     var way = heading;
     for (var round = 0u; round < ROUNDS; round++) {
         var again = false;
         var clear = FAR;
         for (var i = 0u; i < arrayLength(&capsules); i++) {
-            let sphere = nearest(capsules[i], contact.point);
+            let capsule = about(origin, capsules[i]);
+            let sphere = nearest(capsule, contact.point);
             let from_center = contact.point - sphere.xyz;
-            clear = min(clear, clearance(capsules[i], contact.point, sphere));
+            clear = min(clear, clearance(capsule, contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
-                if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz)); }
+                if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz) - root); }
                 let turn = turned_out(parent, way, length, sphere);
                 let pushed = turn.point - contact.point;
                 let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
