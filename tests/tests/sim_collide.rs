@@ -1,9 +1,9 @@
 //! Contacts that are hard to resolve: strands that point nearly at the centre of a ball, where the circle that a vertex can
-//! reach nearly touches the ball, and strands that barely reach out of it.
+//! reach nearly touches the ball, strands that barely reach out of it, and strands between solids that overlap.
 
 mod support;
 
-use glam::{Quat, Vec3, Vec4};
+use glam::{DVec3, Quat, Vec3, Vec4};
 use support::rig;
 use tressfx_conformance::sim::{Motion, Random, Rig, strand_errors, strands_of, wide};
 use tressfx_core::asset::{AssetFormat, HairAsset};
@@ -60,8 +60,8 @@ fn buried(vertices: u32) -> Strands {
     })
 }
 
-/// The kernel, once from the rest pose, on a head that moves: positions and previous positions.
-fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<glam::DVec3>); 2] {
+/// A step in which the head moves.
+fn step(head: Pose) -> Step {
     let sub_step = SubStep {
         length: 1.0 / 120.0,
         length_ratio: 1.0,
@@ -71,7 +71,12 @@ fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<glam::DVec3>); 2] {
         shift: Vec3::X * 0.0003,
         acceleration: 0.0,
     };
-    let step = Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None);
+    Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None)
+}
+
+/// The kernel, once from the rest pose, on a head that moves: positions and previous positions.
+fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<DVec3>); 2] {
+    let step = step(head);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
     rig.run(|sim, list| {
@@ -109,6 +114,91 @@ fn hard_contacts_match_the_reference_for_every_strand() {
             }
         }
     }
+}
+
+/// Positions, then previous positions.
+type State = Vec<DVec3>;
+
+/// The reference, for a strand between solids that overlap.
+fn collided_reference(strands: &Strands, guide: usize, state: &State) -> State {
+    let vertices = strands.vertices as usize;
+    let ball = |at: Vec3, radius: f32| Capsule { a: at, b: at, radius_a: radius, radius_b: radius };
+    let post = Capsule { a: Vec3::new(0.1, -0.3, 0.0), b: Vec3::new(0.25, 0.3, 0.1), radius_a: 0.06, radius_b: 0.09 };
+    let capsules = [BALL, post, ball(Vec3::new(0.0, 0.22, 0.1), 0.08)];
+    let mut after = state.clone();
+    let (positions, previous) = after.split_at_mut(vertices);
+    let range = guide * vertices..(guide + 1) * vertices;
+    let (rest, rest_lengths) = (&strands.rest[range.clone()], &strands.rest_lengths[range]);
+    let mut of_guide = Guide { rest, rest_lengths, positions, previous };
+    reference::collide(&step(Pose::default()), &mut of_guide, &capsules);
+    after
+}
+
+/// The largest distance between two states, as a share of strand length.
+fn apart(one: &State, other: &State) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max) / f64::from(LENGTH)
+}
+
+/// Where a contact hung on its strand with a jump, two drivers that round differently would part there, and so would two frame
+/// rates.
+#[test]
+fn contacts_follow_their_strands_without_a_jump() {
+    for vertices in VERTICES {
+        let strands = straight(vertices, |random| {
+            (random.vector().normalize() * RADIUS * (0.95 + 0.1 * random.signed()), random.vector().normalize())
+        });
+        let mut random = Random::new(7);
+        let edge = f64::from(LENGTH) / f64::from(vertices - 1);
+        let mut shaken = |state: &State, share: f64| -> State {
+            let mut shaken: State =
+                state.iter().map(|point| *point + share * f64::from(LENGTH) * random.vector().as_dvec3()).collect();
+            // Contacts begin where edges have their lengths.
+            for i in 1..vertices as usize {
+                shaken[i] = shaken[i - 1] + edge * (shaken[i] - shaken[i - 1]).normalize();
+            }
+            shaken
+        };
+        let (mut growths, mut jump, mut touched) = (Vec::new(), 0.0, 0);
+        for guide in 0..GUIDES {
+            let after = |state: &State| collided_reference(&strands, guide, state);
+            let range = guide * vertices as usize..(guide + 1) * vertices as usize;
+            let rest = wide(&strands.rest[range]);
+            let state = shaken(&[rest.clone(), rest].concat(), 0.02);
+            let contact = after(&state);
+            touched += usize::from(contact != state);
+            let mut growth = 0.0;
+            for share in [1e-7, 1e-7, 1e-6, 1e-6, 1e-4, 1e-3] {
+                let near = shaken(&state, share);
+                let moved = apart(&after(&near), &contact);
+                growth = f64::max(growth, if share < 1e-5 { moved / share } else { 0.0 });
+                if moved > 10.0 * share {
+                    jump = f64::max(jump, jump_between(&state, &near, after));
+                }
+            }
+            growths.push(growth);
+        }
+        growths.sort_by(f64::total_cmp);
+        let (most, largest) = (growths[GUIDES * 99 / 100], growths[GUIDES - 1]);
+        println!(
+            "{vertices} vertices: {touched} touch, errors grow {most:.1} (99 %), {largest:.1} (largest) times, \
+             {jump:.1e} of strand length (largest jump)"
+        );
+        assert!(touched > GUIDES / 3, "{touched}");
+        assert!(most < 200.0, "{vertices} vertices: an error grows {most:.1} times");
+        assert!(jump < 1e-5, "{vertices} vertices: a jump by {jump:.1e} of strand length");
+    }
+}
+
+/// How far the results are apart where they change fastest on the way from one state to another.
+fn jump_between(one: &State, other: &State, after: impl Fn(&State) -> State) -> f64 {
+    let between = |share: f64| -> State { one.iter().zip(other).map(|(a, b)| a.lerp(*b, share)).collect() };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        let [a, m, b] = [low, middle, high].map(|share| after(&between(share)));
+        if apart(&a, &m) > apart(&m, &b) { high = middle } else { low = middle }
+    }
+    apart(&after(&between(low)), &after(&between(high)))
 }
 
 /// A bounded turn takes several sub-steps, most of them where the strand points exactly at the centre.

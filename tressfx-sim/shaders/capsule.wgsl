@@ -28,23 +28,26 @@ fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
 /// How many times as far as it is deep, or off the way to the centre, a vertex is turned at most: so many times an error of
 /// rounding grows in a contact.
 const GROWTH: f32 = 4.0;
+/// The straightest outwards that a vertex is turned: further on, the angle is like the square root of the depth.
+const LEAST_SINE: f32 = 1.0 / GROWTH;
 /// A strand that points straight at a centre counts as so far off, as a share of its parent's distance and to whatever side:
 /// else it would never get out. It is what positions can just tell.
 const TILT: f32 = 1e-7;
 
-/// Where a vertex has been turned to, and whether it is out.
-struct Turn { point: vec3<f32>, out: bool }
+/// Where a vertex has been turned to, and the share that this took of how far it may be turned.
+struct Turn { point: vec3<f32>, share: f32 }
 
 /// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
-/// plane of parent, centre and `heading` that is a triangle of three known sides.
-///
-/// `heading` is the way of the edge before anything moved, and where the turn starts. The way to where the vertex was would
-/// not do: in a strand that crosses the sphere nearly at right angles each vertex would multiply the errors of its parent.
+/// plane of parent, centre and `heading`, where the turn starts, that is a triangle of three known sides.
 ///
 /// Where the edge points nearly at the centre, the plane is a matter of rounding, and the turn is like the square root of the
-/// depth. So the turn is bounded, and goes on in the next sub-step. Where the parent is so deep inside that it takes nearly
-/// the whole edge to get out, or more, the vertex ends as nearly straight outwards as the same bound allows.
-fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>) -> Turn {
+/// depth. So the turn is bounded, and goes on in the next sub-step. `left` is the share of the bound that earlier turns have
+/// left: between two capsules a vertex is turned back and forth, and each turn would multiply the errors of the one before.
+/// Where the parent is so deep inside that it takes nearly the whole edge to get out, or more, the vertex ends as straight
+/// outwards as `LEAST_SINE` allows, or stays as straight as it is. Where the parent is at the centre, no way leads outwards.
+///
+/// All of this hangs on its arguments without a jump: what is only just touched is only just turned.
+fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>, left: f32) -> Turn {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
     let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
@@ -62,23 +65,27 @@ fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f
     let product = gap * (distance + length + sphere.w) * (sphere.w - distance + length) * (sphere.w + distance - length);
     let twice = max(2.0 * distance * length, 1e-24);
     var cosine = ((sphere.w - distance) * (sphere.w + distance) - length * length) / twice;
-    let least = select(0.0, 1.0 / GROWTH, cosine > 0.0);
-    cosine = min(cosine, sqrt(1.0 - least * least));
-    var sine = max(sqrt(max(product, 0.0)) / twice, least);
-    // Sine and cosine of the turn, and the bound of the tangent of its half.
-    let turn = vec2(old_sine * cosine - old_cosine * sine, old_cosine * cosine + old_sine * sine);
-    let inside = turn.x > 0.0;
-    let off = select(sine * sine, max(old_sine, TILT * distance / max(length, 1e-12)), inside);
-    let bound = 0.5 * GROWTH * min(off, abs(cosine - old_cosine));
-    let whole = abs(turn.x) <= bound * (1.0 + turn.y);
-    if (!whole) {
-        let half = select(-bound, bound, inside);
+    var sine = sqrt(max(product, 0.0)) / twice;
+    let straightest = sqrt(1.0 - LEAST_SINE * LEAST_SINE);
+    if (cosine > max(old_cosine, straightest)) {
+        let straighter = old_cosine > straightest;
+        cosine = select(straightest, old_cosine, straighter);
+        sine = select(LEAST_SINE, old_sine, straighter);
+    }
+    // Tangents of half of the turn, and of half of its bound.
+    let turn = (old_sine * cosine - old_cosine * sine) / max(1.0 + old_cosine * cosine + old_sine * sine, 1e-12);
+    let share_of_length = distance / max(length, 1e-12);
+    let off = select(sine * sine, max(old_sine, TILT * share_of_length), turn > 0.0);
+    let most = 0.5 * GROWTH * max(off, 1e-12);
+    let bound = left * min(most, 0.5 * GROWTH * min(abs(cosine - old_cosine), share_of_length));
+    if (abs(turn) > bound) {
+        let half = sign(turn) * bound;
         let part = vec2(2.0 * half, 1.0 - half * half) / (1.0 + half * half);
         cosine = old_cosine * part.y + old_sine * part.x;
         sine = old_sine * part.y - old_cosine * part.x;
     }
     let sideways = direction_or(across_outwards, across(outwards));
-    return Turn(parent + length * (cosine * outwards + sine * sideways), whole || !inside);
+    return Turn(parent + length * (cosine * outwards + sine * sideways), min(min(abs(turn), bound) / most, 1.0));
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin

@@ -5,7 +5,7 @@
 //
 // A vertex that is so far from all capsules that the next ones cannot have got there is the last to be looked at for a while.
 
-import package::capsule::{GpuCapsule, about, clearance, nearest, slid, turned_out};
+import package::capsule::{GROWTH, GpuCapsule, about, clearance, nearest, slid, turned_out};
 import package::constants::{GUIDES, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
 import package::step::Step;
@@ -18,9 +18,12 @@ import package::vector::{direction_or, rotate, rotate_back};
 @group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
-/// A vertex that leaves one capsule may enter another. One that cannot leave it in this sub-step is left there: another turn
-/// would multiply its errors again.
-const ROUNDS: u32 = 8u;
+/// A vertex that leaves one capsule may enter another.
+const ROUNDS: u32 = 5u;
+/// What a round leaves to the next one of how far it may turn: else each would multiply the errors of the one before.
+const NEXT_ROUND: f32 = 0.25;
+/// As a share of the edge: after less than that nothing is looked at again.
+const LEAST_TURN: f32 = 1e-5;
 /// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
 const INSIDE: f32 = 0.999999;
 /// Further than any groom extends.
@@ -41,7 +44,7 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     let root = positions[strand].xyz;
     // The parent before and after this kernel.
     var old_parent = root;
-    var parent = old_parent;
+    var parent = root;
     var moved = false;
     var clear = 0.0;
     for (var i = 1u; i < VERTICES; i++) {
@@ -74,15 +77,20 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
 }
 
-/// Where a vertex is when it has left all capsules, about the root and seen from the head. `heading` is the way that its edge had,
-/// `past` the place of its past.
+/// Where a vertex is when it has left all capsules, about the root and seen from the head. `edge` is the way that its edge had
+/// before anything moved, `past` the place of its past.
+///
+/// The deeper a vertex is, the more its turn starts from there. The way to where the vertex was would not do: where a strand
+/// crosses a sphere nearly at right angles, each vertex would be turned to the other side than its parent, by errors that grow.
+/// That way alone would not do either: what is only just touched is to be only just turned.
 ///
 /// Every contact takes its share of the velocity, as deep as it is. Between two capsules a vertex is turned back and forth, and
 /// which one is the last hangs on a rounding.
-fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, heading: vec3<f32>, past: u32) -> Contact {
+fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, past: u32) -> Contact {
     let origin = in_head(root);
     var contact = Contact(start, false, vec3(0.0), 0.0);
-    var way = heading;
+    var heading = direction_or(edge, vec3(0.0, -1.0, 0.0));
+    var left = 1.0;
     for (var round = 0u; round < ROUNDS; round++) {
         var again = false;
         var clear = FAR;
@@ -93,21 +101,25 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, h
             clear = min(clear, clearance(capsule, contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
                 if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz) - root); }
-                let turn = turned_out(parent, way, length, sphere);
+                let before = direction_or(contact.point - parent, vec3(0.0, -1.0, 0.0));
+                let apart = length * distance(before, heading);
+                let weight = min(GROWTH * (sphere.w - sqrt(dot(from_center, from_center))) / max(apart, 1e-12), 1.0);
+                let turn = turned_out(parent, mix(before, heading, weight), length, sphere, left);
                 let pushed = turn.point - contact.point;
                 let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
                 contact.kept = slid(contact.kept + pushed, normal, max(dot(pushed, normal), 0.0), step.friction);
                 contact.point = turn.point;
                 contact.touched = true;
-                // Between two capsules it is turned back and forth until it is out of both.
-                way = contact.point - parent;
-                again = again || turn.out;
+                left *= 1.0 - turn.share;
+                heading = mix(heading, direction_or(contact.point - parent, vec3(0.0, -1.0, 0.0)), weight);
+                again = again || dot(pushed, pushed) > LEAST_TURN * LEAST_TURN * length * length;
             }
         }
         if (!again) {
             contact.clear = clear;
             break;
         }
+        left *= NEXT_ROUND;
     }
     return contact;
 }

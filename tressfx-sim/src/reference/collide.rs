@@ -7,9 +7,12 @@ use super::Guide;
 use super::vector::{across, direction_or, rotate_back};
 use crate::step::Step;
 
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 5;
+const NEXT_ROUND: f64 = 0.25;
 const INSIDE: f64 = 0.999999;
+const LEAST_TURN: f64 = 1e-5;
 const GROWTH: f64 = 4.0;
+const LEAST_SINE: f64 = 1.0 / GROWTH;
 const TILT: f64 = 1e-7;
 
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
@@ -53,26 +56,33 @@ struct Vertex {
 
 /// Where a vertex is when it has left all capsules, and what they have left of its way; `None` if it was outside.
 fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVec3, DVec3)> {
-    let (mut point, mut heading, mut kept) = (vertex.start, vertex.heading, vertex.way);
+    let (mut point, mut kept, mut left) = (vertex.start, vertex.way, 1.0);
+    let mut heading = direction_or(vertex.heading, DVec3::NEG_Y);
     let mut touched = false;
     for _ in 0..ROUNDS {
         let mut again = false;
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < INSIDE * radius * radius {
-                let (turned, out) = turned_out(vertex.parent, heading, vertex.length, center, radius);
+                let before = direction_or(point - vertex.parent, DVec3::NEG_Y);
+                let apart = vertex.length * before.distance(heading);
+                let weight = (GROWTH * (radius - point.distance(center)) / apart.max(1e-12)).min(1.0);
+                let aim = before.lerp(heading, weight);
+                let (turned, share) = turned_out(vertex.parent, aim, vertex.length, center, radius, left);
                 let pushed = turned - point;
                 let normal = direction_or(turned - center, DVec3::ZERO);
                 kept = slid(kept + pushed, normal, pushed.dot(normal).max(0.0), friction);
                 point = turned;
-                heading = point - vertex.parent;
+                left *= 1.0 - share;
+                heading = heading.lerp(direction_or(point - vertex.parent, DVec3::NEG_Y), weight);
                 touched = true;
-                again |= out;
+                again |= pushed.length() > LEAST_TURN * vertex.length;
             }
         }
         if !again {
             break;
         }
+        left *= NEXT_ROUND;
     }
     touched.then_some((point, kept))
 }
@@ -86,12 +96,12 @@ fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {
     (a + t * axis, radius_a + t * (radius_b - radius_a))
 }
 
-/// The vertex turned about its parent, onto the sphere or as far as the bound allows, and whether it is out.
-fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius: f64) -> (DVec3, bool) {
+/// The vertex turned about its parent, onto the sphere or as far as what is left of the bound allows, and the share of that.
+fn turned_out(parent: DVec3, aim: DVec3, length: f64, center: DVec3, radius: f64, left: f64) -> (DVec3, f64) {
     let from_center = parent - center;
     let distance = from_center.length();
     let outwards = direction_or(from_center, DVec3::Y);
-    let before = direction_or(heading, outwards);
+    let before = direction_or(aim, outwards);
     let old_cosine = before.dot(outwards);
     let across_outwards = before - old_cosine * outwards;
     let old_sine = across_outwards.length();
@@ -99,19 +109,23 @@ fn turned_out(parent: DVec3, heading: DVec3, length: f64, center: DVec3, radius:
     let product = gap * (distance + length + radius) * (radius - distance + length) * (radius + distance - length);
     let twice = (2.0 * distance * length).max(1e-24);
     let mut cosine = ((radius - distance) * (radius + distance) - length * length) / twice;
-    let least: f64 = if cosine > 0.0 { 1.0 / GROWTH } else { 0.0 };
-    cosine = cosine.min((1.0 - least * least).sqrt());
-    let mut sine = (product.max(0.0).sqrt() / twice).max(least);
-    let turn = f64::atan2(old_sine * cosine - old_cosine * sine, old_cosine * cosine + old_sine * sine);
-    let off = if turn > 0.0 { old_sine.max(TILT * distance / length.max(1e-12)) } else { sine * sine };
-    let bound = 2.0 * (0.5 * GROWTH * off.min((cosine - old_cosine).abs())).atan();
-    let whole = turn.abs() <= bound;
-    if !whole {
-        let (sin, cos) = (turn.signum() * bound).sin_cos();
+    let mut sine = product.max(0.0).sqrt() / twice;
+    let straightest = (1.0 - LEAST_SINE * LEAST_SINE).sqrt();
+    if cosine > straightest.max(old_cosine) {
+        (cosine, sine) = if old_cosine > straightest { (old_cosine, old_sine) } else { (straightest, LEAST_SINE) };
+    }
+    let turn = (old_sine * cosine - old_cosine * sine) / (1.0 + old_cosine * cosine + old_sine * sine).max(1e-12);
+    let share_of_length = distance / length.max(1e-12);
+    let off = if turn > 0.0 { old_sine.max(TILT * share_of_length) } else { sine * sine };
+    let most = 0.5 * GROWTH * off.max(1e-12);
+    let bound = left * most.min(0.5 * GROWTH * (cosine - old_cosine).abs().min(share_of_length));
+    if turn.abs() > bound {
+        let (cos, sin) =
+            ((1.0 - bound * bound) / (1.0 + bound * bound), turn.signum() * 2.0 * bound / (1.0 + bound * bound));
         (cosine, sine) = (old_cosine * cos + old_sine * sin, old_sine * cos - old_cosine * sin);
     }
     let sideways = direction_or(across_outwards, across(outwards));
-    (parent + length * (cosine * outwards + sine * sideways), whole || turn <= 0.0)
+    (parent + length * (cosine * outwards + sine * sideways), (turn.abs().min(bound) / most).min(1.0))
 }
 
 /// What friction leaves of a displacement along a surface.
