@@ -26,14 +26,21 @@ const NEXT_ROUND: f32 = 0.25;
 const LEAST_TURN: f32 = 1e-5;
 /// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
 const INSIDE: f32 = 0.999999;
+/// The way of an edge that has none.
+const DOWN = vec3<f32>(0.0, -1.0, 0.0);
 /// Further than any groom extends.
 const FAR: f32 = 1e30;
 /// Of a clearance, what rounding leaves certain.
 const CERTAIN: f32 = 0.999;
 
-/// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. `clear`
-/// is how far the point is from all capsules, if it has not touched any.
-struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32 }
+/// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. Turns
+/// start from `heading`, and `left` is the share of their bound that is left. `clear` is how far the point is from all capsules, if
+/// it has not touched any.
+struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32, heading: vec3<f32>, left: f32 }
+
+/// What a round does: the capsules from `first` up to `last` are looked at, `hits` of them are left, at last `hit`, `way` is how far
+/// the point goes for that, and `others` how far it is from those that it does not touch.
+struct Round { first: u32, last: u32, hits: u32, hit: u32, way: f32, others: f32 }
 
 @compute @workgroup_size(GROUP)
 fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -50,15 +57,11 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     for (var i = 1u; i < VERTICES; i++) {
         let vertex = positions[i * STRANDS + strand];
         var point = vertex.xyz;
+        moved = moved && vertex.w > 0.0;
+        if (moved) { point = parent + edge_length(i, strand) * direction_or(vertex.xyz - parent, DOWN); }
         clear -= distance(point, parent);
-        if (clear > 0.0 && !moved) {
-            old_parent = point;
-            parent = point;
-            continue;
-        }
-        if (vertex.w > 0.0) {
-            let length = rest_lengths[(i - 1u) * GUIDES + strand];
-            if (moved) { point = parent + length * direction_or(vertex.xyz - parent, vec3(0.0, -1.0, 0.0)); }
+        if (clear <= 0.0 && vertex.w > 0.0) {
+            let length = edge_length(i, strand);
             let heading = rotate_back(step.head_rotation, vertex.xyz - old_parent);
             let contact = resolved(root, in_head(parent - root), in_head(point - root), length, heading, i * GUIDES + strand);
             if (contact.touched) {
@@ -68,8 +71,6 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
             }
             moved = moved || contact.touched;
             clear = CERTAIN * contact.clear;
-        } else {
-            moved = false;
         }
         if (moved) { positions[i * STRANDS + strand] = vec4(point, vertex.w); }
         old_parent = vertex.xyz;
@@ -77,51 +78,68 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
 }
 
+/// Of the edge from the parent of a vertex.
+fn edge_length(vertex: u32, strand: u32) -> f32 {
+    return rest_lengths[(vertex - 1u) * GUIDES + strand];
+}
+
 /// Where a vertex is when it has left all capsules, about the root and seen from the head. `edge` is the way that its edge had
 /// before anything moved, `past` the place of its past.
-///
-/// The deeper a vertex is, the more its turn starts from there. The way to where the vertex was would not do: where a strand
-/// crosses a sphere nearly at right angles, each vertex would be turned to the other side than its parent, by errors that grow.
-/// That way alone would not do either: what is only just touched is to be only just turned.
 ///
 /// Every contact takes its share of the velocity, as deep as it is. Between two capsules a vertex is turned back and forth, and
 /// which one is the last hangs on a rounding.
 fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, past: u32) -> Contact {
     let origin = in_head(root);
-    var contact = Contact(start, false, vec3(0.0), 0.0);
-    var heading = direction_or(edge, vec3(0.0, -1.0, 0.0));
-    var left = 1.0;
-    for (var round = 0u; round < ROUNDS; round++) {
-        var again = false;
-        var clear = FAR;
-        for (var i = 0u; i < arrayLength(&capsules); i++) {
+    var contact = Contact(start, false, vec3(0.0), 0.0, direction_or(edge, DOWN), 1.0);
+    var round = Round(0u, arrayLength(&capsules), 0u, 0u, 0.0, FAR);
+    for (var count = 0u; count < ROUNDS; count++) {
+        for (var i = round.first; i < round.last; i++) {
             let capsule = about(origin, capsules[i]);
             let sphere = nearest(capsule, contact.point);
             let from_center = contact.point - sphere.xyz;
-            clear = min(clear, clearance(capsule, contact.point, sphere));
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
                 if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz) - root); }
-                let before = direction_or(contact.point - parent, vec3(0.0, -1.0, 0.0));
-                let apart = length * distance(before, heading);
-                let weight = min(GROWTH * (sphere.w - sqrt(dot(from_center, from_center))) / max(apart, 1e-12), 1.0);
-                let turn = turned_out(parent, mix(before, heading, weight), length, sphere, left);
-                let pushed = turn.point - contact.point;
-                let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
-                contact.kept = slid(contact.kept + pushed, normal, max(dot(pushed, normal), 0.0), step.friction);
-                contact.point = turn.point;
-                contact.touched = true;
-                left *= 1.0 - turn.share;
-                heading = mix(heading, direction_or(contact.point - parent, vec3(0.0, -1.0, 0.0)), weight);
-                again = again || dot(pushed, pushed) > LEAST_TURN * LEAST_TURN * length * length;
+                round.way += leave(&contact, parent, length, sphere);
+                round.hits += 1u;
+                round.hit = i;
+            } else {
+                round.others = min(round.others, clearance(capsule, contact.point, sphere));
             }
         }
-        if (!again) {
-            contact.clear = clear;
-            break;
-        }
-        left *= NEXT_ROUND;
+        if (!contact.touched) { contact.clear = round.others; }
+        if (round.way <= LEAST_TURN * length) { break; }
+        contact.left *= NEXT_ROUND;
+        round = following(round);
     }
     return contact;
+}
+
+/// The round after this one. Capsules that the point cannot have got to are not looked at.
+fn following(round: Round) -> Round {
+    let others = CERTAIN * round.others - round.way;
+    if (round.hits == 1u && others > 0.0) { return Round(round.hit, round.hit + 1u, 0u, 0u, 0.0, others); }
+    return Round(0u, arrayLength(&capsules), 0u, 0u, 0.0, FAR);
+}
+
+/// Turns a vertex out of a capsule, and says how far.
+///
+/// The deeper it is, the more the turn starts from the way that its edge had before anything moved. The way to where the vertex was
+/// would not do: where a strand crosses a sphere nearly at right angles, each vertex would be turned to the other side than its
+/// parent, by errors that grow. The old way alone would not do either: what is only just touched is to be only just turned.
+fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere: vec4<f32>) -> f32 {
+    let before = direction_or((*contact).point - parent, DOWN);
+    let apart = length * distance(before, (*contact).heading);
+    let depth = sphere.w - distance((*contact).point, sphere.xyz);
+    let weight = min(GROWTH * depth / max(apart, 1e-12), 1.0);
+    let turn = turned_out(parent, mix(before, (*contact).heading, weight), length, sphere, (*contact).left);
+    let pushed = turn.point - (*contact).point;
+    let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
+    (*contact).kept = slid((*contact).kept + pushed, normal, max(dot(pushed, normal), 0.0), step.friction);
+    (*contact).point = turn.point;
+    (*contact).touched = true;
+    (*contact).heading = mix((*contact).heading, direction_or(turn.point - parent, DOWN), weight);
+    (*contact).left *= 1.0 - turn.share;
+    return sqrt(dot(pushed, pushed));
 }
 
 /// Where the head's motion takes a point. It carries the capsules.

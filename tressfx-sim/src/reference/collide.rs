@@ -60,7 +60,7 @@ fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVe
     let mut heading = direction_or(vertex.heading, DVec3::NEG_Y);
     let mut touched = false;
     for _ in 0..ROUNDS {
-        let mut again = false;
+        let mut gone = 0.0;
         for capsule in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < INSIDE * radius * radius {
@@ -76,10 +76,10 @@ fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVe
                 left *= 1.0 - share;
                 heading = heading.lerp(direction_or(point - vertex.parent, DVec3::NEG_Y), weight);
                 touched = true;
-                again |= pushed.length() > LEAST_TURN * vertex.length;
+                gone += pushed.length();
             }
         }
-        if !again {
+        if gone <= LEAST_TURN * vertex.length {
             break;
         }
         left *= NEXT_ROUND;
