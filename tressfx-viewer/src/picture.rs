@@ -65,8 +65,12 @@ impl Output {
             Some("apng") => Self::Animation(path.to_owned(), Kind::Apng, Vec::new()),
             _ => bail!("{text}: the ending chooses the format: .png, .gif, .apng, or / for a folder"),
         };
-        // Not truncated yet: a run that fails must not cost the picture of an earlier one.
+        // A run that fails must neither cost the picture of an earlier one nor leave an empty one.
+        let is_new = !path.exists();
         File::options().create(true).append(true).open(path).with_context(|| text.to_string())?;
+        if is_new {
+            std::fs::remove_file(path).with_context(|| text.to_string())?;
+        }
         Ok(output)
     }
 

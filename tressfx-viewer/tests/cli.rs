@@ -73,6 +73,18 @@ fn bad_files_are_refused_with_file_place_and_field() {
 }
 
 #[test]
+fn a_run_that_fails_leaves_the_pictures_as_they_were() {
+    let folder = folder("no_picture");
+    std::fs::write(folder.join("noise.tfx"), b"\x89PNG nothing of the kind").unwrap();
+    std::fs::write(folder.join("earlier.png"), b"a picture").unwrap();
+    for name in ["earlier.png", "never.png"] {
+        fails(&folder, &["render", "noise.tfx", "--out", name]);
+    }
+    assert_eq!(std::fs::read(folder.join("earlier.png")).unwrap(), b"a picture");
+    assert!(!folder.join("never.png").exists());
+}
+
+#[test]
 fn bad_words_are_refused_by_name() {
     let folder = folder("bad_words");
     let words = |extra: &[&str]| fails(&folder, &[&["render", "builtin:fur:10:4", "--out", "x.png"], extra].concat());
