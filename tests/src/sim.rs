@@ -255,9 +255,8 @@ const RESOLVED: f64 = 100.0;
 
 /// For every strand the largest distance between GPU and reference, as a share of its length; ascending.
 ///
-/// Rounding is absolute: at 1 m from the origin an f32 is no better than 6e-8 m. So a few roundings of the coordinate do not
-/// count, and strands of which f32 cannot tell where their edges point only have to be finite; the mohawk has four of them,
-/// the shortest 7e-6 m long.
+/// Rounding is absolute: at 1 m from the centre an f32 is no better than 6e-8 m. So a few roundings of the coordinate do not
+/// count, and strands of which f32 cannot tell where their edges point only have to be finite; the mohawk has one of 7e-6 m.
 pub fn strand_errors(strands: &Strands, gpu: &[Vec4], reference: &[DVec3]) -> Vec<f64> {
     let vertices = strands.vertices as usize;
     let lengths = lengths(strands);

@@ -74,8 +74,21 @@ fn step(head: Pose) -> Step {
     Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None)
 }
 
-/// The kernel, once from the rest pose, on a head that moves: positions and previous positions.
-fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<DVec3>); 2] {
+/// From the skin of the ball in any direction, amid solids that overlap.
+fn amid(vertices: u32) -> Strands {
+    straight(vertices, |random| {
+        (random.vector().normalize() * RADIUS * (0.95 + 0.1 * random.signed()), random.vector().normalize())
+    })
+}
+
+fn solids() -> [Capsule; 3] {
+    let post = Capsule { a: Vec3::new(0.1, -0.3, 0.0), b: Vec3::new(0.25, 0.3, 0.1), radius_a: 0.06, radius_b: 0.09 };
+    let at = Vec3::new(0.0, 0.22, 0.1);
+    [BALL, post, Capsule { a: at, b: at, radius_a: 0.08, radius_b: 0.08 }]
+}
+
+/// The kernel, once from the rest pose, on a head that moves: positions and previous positions. And how many strands it moves.
+fn collided(rig: &mut Rig, capsules: &[Capsule], head: Pose) -> ([(Vec<Vec4>, Vec<DVec3>); 2], usize) {
     let step = step(head);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
@@ -84,7 +97,9 @@ fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<DVec3>); 2] {
         sim.record_stage(list, Stage::Collide, false);
     });
     let vertices = rig.strands[0].vertices as usize;
-    let (rest, ball) = (rig.rest(0), rig.centred(&BALL));
+    let rest = rig.rest(0);
+    let capsules: Vec<_> = capsules.iter().map(|capsule| rig.centred(capsule)).collect();
+    let before = positions.clone();
     for guide in 0..GUIDES {
         let range = guide * vertices..(guide + 1) * vertices;
         let mut of_guide = Guide {
@@ -93,24 +108,34 @@ fn collided(rig: &mut Rig, head: Pose) -> [(Vec<Vec4>, Vec<DVec3>); 2] {
             positions: &mut positions[range.clone()],
             previous: &mut previous[range],
         };
-        reference::collide(&step, &mut of_guide, &[ball]);
+        reference::collide(&step, &mut of_guide, &capsules);
     }
-    [(rig.positions(0), positions), (rig.previous(0), previous)]
+    let touched =
+        positions.chunks(vertices).zip(before.chunks(vertices)).filter(|(after, before)| after != before).count();
+    ([(rig.positions(0), positions), (rig.previous(0), previous)], touched)
 }
 
 #[test]
-fn hard_contacts_match_the_reference_for_every_strand() {
+fn hard_contacts_match_the_reference() {
     let head = Pose { rotation: Quat::from_rotation_y(0.7), translation: Vec3::new(0.02, -0.01, 0.03) };
     for vertices in VERTICES {
-        for (name, strands) in [("aimed", aimed(vertices)), ("buried", buried(vertices))] {
-            let Some(mut rig) = rig(strands, limp(), &[BALL]) else { return };
-            for (gpu, reference) in collided(&mut rig, head) {
+        // Amid solids each vertex multiplies the errors of its parent: one strand in a hundred may miss.
+        for (name, strands, capsules, held) in [
+            ("aimed", aimed(vertices), &[BALL][..], GUIDES),
+            ("buried", buried(vertices), &[BALL], GUIDES),
+            ("amid", amid(vertices), &solids(), GUIDES * 99 / 100),
+        ] {
+            let Some(mut rig) = rig(strands, limp(), capsules) else { return };
+            let (states, touched) = collided(&mut rig, capsules, head);
+            assert!(touched > GUIDES / 3, "{name}, {vertices} vertices: {touched} strands touch");
+            for (gpu, reference) in states {
                 let errors = strand_errors(&rig.strands[0], &gpu, &reference);
                 let (median, largest) = (errors[GUIDES / 2], errors[GUIDES - 1]);
                 println!(
                     "{name}, {vertices} vertices: {median:.1e} (median), {largest:.1e} (largest) of strand length"
                 );
-                assert!(largest <= 1e-5, "{name}, {vertices} vertices: {largest:e}");
+                assert!(errors[held - 1] <= 1e-5, "{name}, {vertices} vertices: {:e}", errors[held - 1]);
+                assert!(largest < 0.01, "{name}, {vertices} vertices: {largest:e}");
             }
         }
     }
@@ -122,15 +147,12 @@ type State = Vec<DVec3>;
 /// The reference, for a strand between solids that overlap.
 fn collided_reference(strands: &Strands, guide: usize, state: &State) -> State {
     let vertices = strands.vertices as usize;
-    let ball = |at: Vec3, radius: f32| Capsule { a: at, b: at, radius_a: radius, radius_b: radius };
-    let post = Capsule { a: Vec3::new(0.1, -0.3, 0.0), b: Vec3::new(0.25, 0.3, 0.1), radius_a: 0.06, radius_b: 0.09 };
-    let capsules = [BALL, post, ball(Vec3::new(0.0, 0.22, 0.1), 0.08)];
     let mut after = state.clone();
     let (positions, previous) = after.split_at_mut(vertices);
     let range = guide * vertices..(guide + 1) * vertices;
     let (rest, rest_lengths) = (&strands.rest[range.clone()], &strands.rest_lengths[range]);
     let mut of_guide = Guide { rest, rest_lengths, positions, previous };
-    reference::collide(&step(Pose::default()), &mut of_guide, &capsules);
+    reference::collide(&step(Pose::default()), &mut of_guide, &solids());
     after
 }
 
@@ -144,9 +166,7 @@ fn apart(one: &State, other: &State) -> f64 {
 #[test]
 fn contacts_follow_their_strands_without_a_jump() {
     for vertices in VERTICES {
-        let strands = straight(vertices, |random| {
-            (random.vector().normalize() * RADIUS * (0.95 + 0.1 * random.signed()), random.vector().normalize())
-        });
+        let strands = amid(vertices);
         let mut random = Random::new(7);
         let edge = f64::from(LENGTH) / f64::from(vertices - 1);
         let mut shaken = |state: &State, share: f64| -> State {

@@ -28,8 +28,7 @@ fn tip_distances(strands: &Strands, one: &[glam::Vec3], other: &[glam::Vec3]) ->
 
 /// 60 sub-steps on the GPU and in f64.
 ///
-/// Not every strand can agree: one that stands on end buckles to a side that hangs on the last bit, and so does the GPU's
-/// answer to a contact. One in a hundred may.
+/// Not every strand can agree: one that stands on end buckles to a side that hangs on the last bit. One in a hundred may.
 fn against_reference(name: &str, strands: Strands, capsules: &[Capsule]) {
     let motion = Motion::turning(&strands);
     let params = SimParams::default();

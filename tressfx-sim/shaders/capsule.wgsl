@@ -38,20 +38,20 @@ const TILT: f32 = 1e-7;
 struct Turn { point: vec3<f32>, share: f32 }
 
 /// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
-/// plane of parent, centre and `heading`, where the turn starts, that is a triangle of three known sides.
+/// plane of parent, centre and `aim`, where the turn starts, that is a triangle of three known sides.
 ///
 /// Where the edge points nearly at the centre, the plane is a matter of rounding, and the turn is like the square root of the
 /// depth. So the turn is bounded, and goes on in the next sub-step. `left` is the share of the bound that earlier turns have
-/// left: between two capsules a vertex is turned back and forth, and each turn would multiply the errors of the one before.
+/// left: between two capsules a vertex is turned back and forth, and else each turn would multiply the errors of the one before.
 /// Where the parent is so deep inside that it takes nearly the whole edge to get out, or more, the vertex ends as straight
 /// outwards as `LEAST_SINE` allows, or stays as straight as it is. Where the parent is at the centre, no way leads outwards.
 ///
 /// All of this hangs on its arguments without a jump: what is only just touched is only just turned.
-fn turned_out(parent: vec3<f32>, heading: vec3<f32>, length: f32, sphere: vec4<f32>, left: f32) -> Turn {
+fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>, left: f32) -> Turn {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
     let outwards = direction_or(from_center, vec3(0.0, 1.0, 0.0));
-    let before = direction_or(heading, outwards);
+    let before = direction_or(aim, outwards);
     // Cosines and sines are those of the angle between `outwards` and the edge.
     let old_cosine = dot(before, outwards);
     // Twice: what rounding leaves of two directions that are nearly one lies along them as likely as across, and a turn to that

@@ -34,13 +34,13 @@ const FAR: f32 = 1e30;
 const CERTAIN: f32 = 0.999;
 
 /// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. Turns
-/// start from `heading`, and `left` is the share of their bound that is left. `clear` is how far the point is from all capsules, if
-/// it has not touched any.
+/// start from `heading`, and `left` is the share of their bound that is left. The point is at least
+/// `clear` away from all capsules, if it has not touched any.
 struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32, heading: vec3<f32>, left: f32 }
 
-/// What a round does: the capsules from `first` up to `last` are looked at, `hits` of them are left, at last `hit`, `way` is how far
-/// the point goes for that, and `others` how far it is from those that it does not touch.
-struct Round { first: u32, last: u32, hits: u32, hit: u32, way: f32, others: f32 }
+/// What a round does: the capsules from `first` up to `last` are looked at, `hits` of them held the point, the last of those is `hit`,
+/// `gone` is how far the point has been turned, and it was at least `others` away from all that did not hold it.
+struct Round { first: u32, last: u32, hits: u32, hit: u32, gone: f32, others: f32 }
 
 @compute @workgroup_size(GROUP)
 fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -99,24 +99,25 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, e
             let from_center = contact.point - sphere.xyz;
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
                 if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz) - root); }
-                round.way += leave(&contact, parent, length, sphere);
+                round.gone += leave(&contact, parent, length, sphere);
                 round.hits += 1u;
                 round.hit = i;
+                if (CERTAIN * round.others <= round.gone) { round.last = arrayLength(&capsules); }
             } else {
                 round.others = min(round.others, clearance(capsule, contact.point, sphere));
             }
         }
         if (!contact.touched) { contact.clear = round.others; }
-        if (round.way <= LEAST_TURN * length) { break; }
+        if (round.gone <= LEAST_TURN * length) { break; }
         contact.left *= NEXT_ROUND;
         round = following(round);
     }
     return contact;
 }
 
-/// The round after this one. Capsules that the point cannot have got to are not looked at.
+/// The round after this one. Capsules that the point cannot have got to are not looked at, unless that round takes it further.
 fn following(round: Round) -> Round {
-    let others = CERTAIN * round.others - round.way;
+    let others = CERTAIN * round.others - round.gone;
     if (round.hits == 1u && others > 0.0) { return Round(round.hit, round.hit + 1u, 0u, 0u, 0.0, others); }
     return Round(0u, arrayLength(&capsules), 0u, 0u, 0.0, FAR);
 }

@@ -66,7 +66,7 @@ impl Output {
             _ => bail!("{text}: the ending chooses the format: .png, .gif, .apng, or / for a folder"),
         };
         // A run that fails must neither cost the picture of an earlier one nor leave an empty one.
-        let is_new = !path.exists();
+        let is_new = path.symlink_metadata().is_err();
         File::options().create(true).append(true).open(path).with_context(|| text.to_string())?;
         if is_new {
             std::fs::remove_file(path).with_context(|| text.to_string())?;

@@ -20,7 +20,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
     let mut moved = false;
     let mut old_parent = guide.positions[0];
     for i in 1..guide.vertices() {
-        let heading = rotate_back(step.head_rotation.as_dvec4(), guide.positions[i] - old_parent);
+        let edge = rotate_back(step.head_rotation.as_dvec4(), guide.positions[i] - old_parent);
         old_parent = guide.positions[i];
         if guide.is_pinned(i) {
             moved = false;
@@ -33,7 +33,7 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
         }
         let start = step.in_head(guide.positions[i]);
         let way = start - step.in_head(step.carry(guide.previous[i]));
-        let vertex = Vertex { parent: step.in_head(parent), start, length, heading, way };
+        let vertex = Vertex { parent: step.in_head(parent), start, length, edge, way };
         if let Some((point, kept)) = resolved(capsules, &vertex, f64::from(step.friction)) {
             guide.previous[i] = step.carry_back(step.in_world(point - kept));
             guide.positions[i] = step.in_world(point);
@@ -48,8 +48,8 @@ struct Vertex {
     start: DVec3,
     /// Of the edge from the parent.
     length: f64,
-    /// The way that the edge had.
-    heading: DVec3,
+    /// The way that the edge had before anything moved.
+    edge: DVec3,
     /// What it has made in the sub-step.
     way: DVec3,
 }
@@ -57,7 +57,7 @@ struct Vertex {
 /// Where a vertex is when it has left all capsules, and what they have left of its way; `None` if it was outside.
 fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVec3, DVec3)> {
     let (mut point, mut kept, mut left) = (vertex.start, vertex.way, 1.0);
-    let mut heading = direction_or(vertex.heading, DVec3::NEG_Y);
+    let mut heading = direction_or(vertex.edge, DVec3::NEG_Y);
     let mut touched = false;
     for _ in 0..ROUNDS {
         let mut gone = 0.0;
