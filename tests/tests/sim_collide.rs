@@ -87,8 +87,11 @@ fn solids() -> [Capsule; 3] {
     [BALL, post, Capsule { a: at, b: at, radius_a: 0.08, radius_b: 0.08 }]
 }
 
+/// What the GPU has, and what the reference has.
+type Pair = (Vec<Vec4>, Vec<DVec3>);
+
 /// The kernel, once from the rest pose, on a head that moves: positions and previous positions. And how many strands it moves.
-fn collided(rig: &mut Rig, capsules: &[Capsule], head: Pose) -> ([(Vec<Vec4>, Vec<DVec3>); 2], usize) {
+fn collided(rig: &mut Rig, capsules: &[Capsule], head: Pose) -> ([Pair; 2], usize) {
     let step = step(head);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
