@@ -18,6 +18,9 @@ use crate::params::Params;
 use crate::stats::{GroomStats, PassTimes, RenderStats, SimStats, Stats};
 use crate::trace::Trace;
 
+/// As often as that the simulation is told where the head is, at least.
+const POSES_A_SECOND: f64 = 60.0;
+
 /// A groom on its way through time.
 pub(crate) struct Run {
     pub(crate) groom: Groom,
@@ -59,12 +62,17 @@ impl Run {
         Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind })
     }
 
-    /// Records the next frame of the simulation.
+    /// Records the next frame of the simulation. The motion is known between frames too, so few frames do not make it coarser.
     pub(crate) fn step(&mut self, args: &cli::Scene) -> Result<PassList> {
-        self.frame += 1;
-        let head = self.head(args);
         let mut list = PassList::new();
-        self.sim.step(&mut list, &StepInput { dt: 1.0 / args.fps, head, wind: self.wind })?;
+        let bounds = self.groom.bounds();
+        let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
+        for part in 1..=parts as u32 {
+            let seconds = (f64::from(self.frame) + f64::from(part) / parts) / args.fps;
+            let head = motion::head(args.motion, seconds, &bounds);
+            self.sim.step(&mut list, &StepInput { dt: 1.0 / (args.fps * parts), head, wind: self.wind })?;
+        }
+        self.frame += 1;
         Ok(list)
     }
 

@@ -1,5 +1,4 @@
-//! The program at several frame rates: after two seconds of a motion every tip is where it is at 120 frames a second. One strand in a
-//! thousand may be chaotic: the mohawk has one or two.
+//! The program at several frame rates: after two seconds of a motion every tip is where it is at 120 frames a second.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -40,7 +39,7 @@ fn agrees(groom: &str) {
             let last = distances.len() - 1;
             let (most, worst) = (distances[last - last / 1000], distances[last]);
             println!("{groom}, {motion}, {fps} fps: {most:.1e} (99.9 %), {worst:.1e} (largest) of a strand");
-            assert!(most < 0.02 && worst < 0.1, "{groom}, {motion}, {fps} fps: {most} {worst}");
+            assert!(worst < 0.02, "{groom}, {motion}, {fps} fps: {worst}");
         }
     }
 }
