@@ -34,8 +34,8 @@ const FAR: f32 = 1e30;
 const CERTAIN: f32 = 0.999;
 
 /// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. Turns
-/// start from `heading`, and `left` is the share of their bound that is left. The point is at least
-/// `clear` away from all capsules, if it has not touched any.
+/// start from `heading`, and `left` is the share of their bound that is left. The point is at least `clear` away from all capsules, if
+/// it has not touched any.
 struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32, heading: vec3<f32>, left: f32 }
 
 /// What a round does: the capsules from `first` up to `last` are looked at, `hits` of them held the point, the last of those is `hit`,
@@ -62,8 +62,8 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         clear -= distance(point, parent);
         if (clear <= 0.0 && vertex.w > 0.0) {
             let length = edge_length(i, strand);
-            let heading = rotate_back(step.head_rotation, vertex.xyz - old_parent);
-            let contact = resolved(root, in_head(parent - root), in_head(point - root), length, heading, i * GUIDES + strand);
+            let edge = in_head(vertex.xyz - old_parent);
+            let contact = resolved(root, in_head(parent - root), in_head(point - root), length, edge, i * GUIDES + strand);
             if (contact.touched) {
                 point = root + in_world(contact.point);
                 let past = rotate_back(step.turn, root + in_world(contact.point - contact.kept)) - step.shift;
@@ -86,8 +86,8 @@ fn edge_length(vertex: u32, strand: u32) -> f32 {
 /// Where a vertex is when it has left all capsules, about the root and seen from the head. `edge` is the way that its edge had
 /// before anything moved, `past` the place of its past.
 ///
-/// Every contact takes its share of the velocity, as deep as it is. Between two capsules a vertex is turned back and forth, and
-/// which one is the last hangs on a rounding.
+/// Every contact takes its share of the velocity, as deep as it is: between two capsules a vertex is turned back and forth, and no
+/// contact stands for all.
 fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, past: u32) -> Contact {
     let origin = in_head(root);
     var contact = Contact(start, false, vec3(0.0), 0.0, direction_or(edge, DOWN), 1.0);

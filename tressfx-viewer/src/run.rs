@@ -65,11 +65,9 @@ impl Run {
     /// Records the next frame of the simulation. The motion is known between frames too, so few frames do not make it coarser.
     pub(crate) fn step(&mut self, args: &cli::Scene) -> Result<PassList> {
         let mut list = PassList::new();
-        let bounds = self.groom.bounds();
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
         for part in 1..=parts as u32 {
-            let seconds = (f64::from(self.frame) + f64::from(part) / parts) / args.fps;
-            let head = motion::head(args.motion, seconds, &bounds);
+            let head = self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
             self.sim.step(&mut list, &StepInput { dt: 1.0 / (args.fps * parts), head, wind: self.wind })?;
         }
         self.frame += 1;
@@ -78,7 +76,11 @@ impl Run {
 
     /// Where the head is in the frame that was recorded last.
     pub(crate) fn head(&self, args: &cli::Scene) -> Pose {
-        motion::head(args.motion, f64::from(self.frame) / args.fps, &self.groom.bounds())
+        self.head_at(args, f64::from(self.frame))
+    }
+
+    fn head_at(&self, args: &cli::Scene, frames: f64) -> Pose {
+        motion::head(args.motion, frames / args.fps, &self.groom.bounds())
     }
 
     /// Runs a list and keeps the times of its passes.
