@@ -1,117 +1,158 @@
-//! The rules of a list, checked in one place so that no backend has to.
+//! The rules of a list, held against the descriptions of what it names: before a command reaches a graphics API, in release
+//! builds too.
 
-use crate::hazards::{Access, accesses};
-use crate::id::Resource;
-use crate::pass::{Command, ComputePass, Grid, Groups, PassList};
-use crate::shader::{Shader, SlotKind};
+mod bindings;
+mod desc;
+mod raster;
 
-/// Checks a list in debug builds.
+use crate::backend::{BufferDesc, BufferUses, Caps, ComputeDesc, RasterDesc, TextureDesc, TextureUses};
+use crate::error::{Error, Need, Result};
+use crate::id::{BufferId, PipelineId, TextureId};
+use crate::pass::{Command, ComputePass, Grid, Groups, PassList, ROW_ALIGNMENT};
+
+/// What knows the descriptions of resources: those that lists of an epoch may name.
+pub(crate) trait Described {
+    fn caps(&self) -> &Caps;
+    fn buffer(&self, id: BufferId, epoch: u64) -> Option<&BufferDesc>;
+    fn texture(&self, id: TextureId, epoch: u64) -> Option<&TextureDesc>;
+    fn compute(&self, id: PipelineId, epoch: u64) -> Option<&ComputeDesc>;
+    fn raster(&self, id: PipelineId, epoch: u64) -> Option<&RasterDesc>;
+}
+
+/// What is wrong, in words.
+type Rule<T = ()> = Result<T, String>;
+
+/// Descriptions, as one list sees them.
+struct Known<'a> {
+    all: &'a dyn Described,
+    epoch: u64,
+}
+
+/// Checks a list.
 ///
-/// # Panics
-/// If a rule is broken, with the label or the place of the command: always a mistake of the program.
-pub fn check(list: &PassList) {
-    if cfg!(debug_assertions)
-        && let Some(problem) = problem(list)
-    {
-        panic!("{problem}");
+/// # Errors
+/// [`Error::Rule`] with the first command that breaks a rule.
+pub(crate) fn check(list: &PassList, all: &dyn Described) -> Result<()> {
+    let known = Known { all, epoch: list.epoch() };
+    for (index, command) in list.commands().iter().enumerate() {
+        known.command(command, list.bytes().len()).map_err(|message| {
+            let scope = command.scope().map(|scope| format!(" of {scope}")).unwrap_or_default();
+            Error::rule(format!("command {index}, {}{scope}", command.name()), message)
+        })?;
     }
+    Ok(())
 }
 
-/// The first broken rule of a list, in words.
-///
-/// The rules: sizes and offsets are multiples of 4, uploads lie within the list's bytes, a copy has two ends, a grid fits
-/// the dimensions of every device, a buffer with the number of groups is not bound beside, each binding is of the kind that the shader declares, and within one pass nothing
-/// that is written or drawn to is also bound another way.
-///
-/// It sees no descriptions of resources. That they are alive is the backend's to check; that ranges lie within their
-/// buffers, and that pipelines fit the targets, the caller answers for.
-pub fn problem(list: &PassList) -> Option<String> {
-    list.commands.iter().enumerate().find_map(|(index, command)| {
-        let problem = misaligned(command).or_else(|| misused(command, list.bytes.len()))?;
-        Some(format!("command {index}, {}: {problem}", name(command)))
-    })
-}
-
-fn name(command: &Command) -> &'static str {
-    match command {
-        Command::Upload { .. } => "upload",
-        Command::Clear { .. } => "clear",
-        Command::Copy { .. } => "copy",
-        Command::Compute(pass) => pass.kernel.label(),
-        Command::Raster(pass) => pass.label,
-        Command::ReadBuffer { .. } => "read buffer",
-        Command::ReadTexture { .. } => "read texture",
-    }
-}
-
-fn misaligned(command: &Command) -> Option<String> {
-    let sizes: Vec<u64> = match command {
-        Command::Upload { offset, data, .. } => vec![*offset, data.len() as u64],
-        Command::Clear { offset, bytes, .. } | Command::ReadBuffer { offset, bytes, .. } => vec![*offset, *bytes],
-        Command::Copy { src_offset, dst_offset, bytes, .. } => vec![*src_offset, *dst_offset, *bytes],
-        Command::Compute(ComputePass { groups: Groups::Indirect { offset, .. }, .. }) => vec![*offset],
-        _ => Vec::new(),
-    };
-    let odd = sizes.into_iter().find(|size| size % 4 != 0)?;
-    Some(format!("{odd} is not a multiple of 4"))
-}
-
-fn misused(command: &Command, bytes: usize) -> Option<String> {
-    match command {
-        Command::Upload { data, .. } if data.end > bytes => {
-            Some(format!("bytes {data:?} of a list that holds {bytes}"))
+impl Known<'_> {
+    fn command(&self, command: &Command, uploaded: usize) -> Rule {
+        match command {
+            Command::Upload { dst, offset, data } => {
+                if data.start > data.end || data.end > uploaded {
+                    return Err(format!("bytes {data:?} of a list that holds {uploaded}"));
+                }
+                self.range(*dst, *offset, data.len() as u64, BufferUses::COPY_TARGET)
+            }
+            Command::Clear { dst, offset, bytes } => self.range(*dst, *offset, *bytes, BufferUses::COPY_TARGET),
+            Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
+                if src == dst {
+                    return Err(format!("from {src:?} to itself"));
+                }
+                self.range(*src, *src_offset, *bytes, BufferUses::COPY_SOURCE)?;
+                self.range(*dst, *dst_offset, *bytes, BufferUses::COPY_TARGET)
+            }
+            Command::CopyToTexture { src, offset, row_bytes, dst } => self.rows(*src, *offset, *row_bytes, *dst),
+            Command::Compute(pass) => self.compute(pass),
+            Command::Raster(pass) => self.raster(pass),
+            Command::ReadBuffer { src, offset, bytes, .. } => {
+                self.need(Need::ReadBack)?;
+                self.range(*src, *offset, *bytes, BufferUses::COPY_SOURCE)
+            }
+            Command::ReadTexture { src, .. } => {
+                self.need(Need::ReadBack)?;
+                self.texture(*src, TextureUses::COPY_SOURCE).map(drop)
+            }
         }
-        Command::Copy { src, dst, .. } if src == dst => Some(String::from("from a buffer to itself")),
-        Command::Compute(pass) => crowded(pass.groups)
-            .or_else(|| mismatch(&pass.kernel.shader, pass.bindings.resources()))
-            .or_else(|| argued(pass)),
-        Command::Raster(pass) => pass
-            .draws
-            .iter()
-            .find_map(|draw| mismatch(&draw.kernel.shader, draw.bindings.resources()))
-            .or_else(|| drawn_and_bound(command)),
-        _ => None,
     }
-}
 
-fn crowded(groups: Groups) -> Option<String> {
-    let Groups::Grid(grid) = groups else { return None };
-    let too_many = grid.0.iter().any(|&groups| groups > Grid::MAX_GROUPS);
-    too_many.then(|| format!("{grid:?} exceeds {} groups in a dimension", Grid::MAX_GROUPS))
-}
-
-fn argued(pass: &ComputePass) -> Option<String> {
-    let Groups::Indirect { buffer, .. } = pass.groups else { return None };
-    let bound = pass.bindings.resources().contains(&buffer.into());
-    bound.then(|| format!("{buffer:?} holds the number of groups and is bound in the same pass"))
-}
-
-fn mismatch(shader: &Shader, resources: &[Resource]) -> Option<String> {
-    if shader.slots.len() != resources.len() {
-        return Some(format!("{} of {} bindings", resources.len(), shader.slots.len()));
+    fn need(&self, need: Need) -> Rule {
+        self.all.caps().check("", &[need]).map_err(|_| format!("the device has no {need}"))
     }
-    for (index, (slot, resource)) in shader.slots.iter().zip(resources).enumerate() {
-        let texture = matches!(slot.kind, SlotKind::Texture | SlotKind::DepthTexture);
-        if texture != matches!(resource, Resource::Texture(_)) {
-            return Some(format!("`{}` is a {:?}, bound is {resource:?}", slot.name, slot.kind));
+
+    /// A buffer that can be used so.
+    fn buffer(&self, id: BufferId, uses: BufferUses) -> Rule<&BufferDesc> {
+        let desc = self.all.buffer(id, self.epoch).ok_or_else(|| {
+            format!("{id:?} is no buffer of this backend, or it was destroyed before the list was begun")
+        })?;
+        match desc.uses.contains(uses) {
+            true => Ok(desc),
+            false => Err(format!("`{}` was not made for {uses:?}: it is for {:?}", desc.label, desc.uses)),
         }
-        let again = |other: usize| {
-            let written = slot.kind == SlotKind::ReadWrite || shader.slots[other].kind == SlotKind::ReadWrite;
-            resources[other] == *resource && written
-        };
-        if let Some(other) = (0..index).find(|&other| again(other)) {
-            return Some(format!(
-                "`{}` and `{}` are the same buffer, and it is written",
-                shader.slots[other].name, slot.name
+    }
+
+    /// A texture that can be used so.
+    fn texture(&self, id: TextureId, uses: TextureUses) -> Rule<&TextureDesc> {
+        let desc = self.all.texture(id, self.epoch).ok_or_else(|| {
+            format!("{id:?} is no texture of this backend, or it was destroyed before the list was begun")
+        })?;
+        match desc.uses.contains(uses) {
+            true => Ok(desc),
+            false => Err(format!("`{}` was not made for {uses:?}: it is for {:?}", desc.label, desc.uses)),
+        }
+    }
+
+    /// A part of a buffer, in multiples of 4.
+    fn range(&self, id: BufferId, offset: u64, bytes: u64, uses: BufferUses) -> Rule {
+        let desc = self.buffer(id, uses)?;
+        if let Some(odd) = [offset, bytes].into_iter().find(|size| size % 4 != 0) {
+            return Err(format!("`{}`: {odd} is not a multiple of 4", desc.label));
+        }
+        within(desc, offset, bytes)
+    }
+
+    /// Rows of a buffer that become a texture.
+    fn rows(&self, src: BufferId, offset: u64, row_bytes: u32, dst: TextureId) -> Rule {
+        let buffer = self.buffer(src, BufferUses::COPY_SOURCE)?;
+        let texture = self.texture(dst, TextureUses::COPY_TARGET)?;
+        let [width, height] = texture.size.map(u64::from);
+        let row = width * u64::from(texture.format.bytes());
+        if texture.format.is_depth() {
+            return Err(format!("`{}` holds depth", texture.label));
+        }
+        if offset % 8 != 0 || row_bytes % ROW_ALIGNMENT != 0 {
+            return Err(format!(
+                "offset {offset} or rows of {row_bytes} bytes: multiples of 8 and {ROW_ALIGNMENT} are"
             ));
         }
+        if row > u64::from(row_bytes) {
+            return Err(format!("rows of {row_bytes} bytes, `{}` has {row}", texture.label));
+        }
+        within(buffer, offset, u64::from(row_bytes) * (height - 1) + row)
     }
-    None
+
+    fn compute(&self, pass: &ComputePass) -> Rule {
+        let kernel = &pass.kernel;
+        let made = self.all.compute(kernel.pipeline, self.epoch).ok_or_else(|| {
+            format!("{:?} is no compute pipeline of this backend, or it was destroyed", kernel.pipeline)
+        })?;
+        self.same_shader(&made.shader, &kernel.shader)?;
+        self.bindings(&kernel.shader, &pass.bindings)?;
+        match pass.groups {
+            Groups::Grid(grid) if grid.0.iter().any(|&groups| groups > Grid::MAX_GROUPS) => {
+                Err(format!("{grid:?} exceeds {} groups in a dimension", Grid::MAX_GROUPS))
+            }
+            Groups::Grid(_) => Ok(()),
+            Groups::Indirect { buffer, .. } if pass.bindings.names(buffer.into()) => {
+                Err(format!("{buffer:?} holds the number of groups and is bound in the same pass"))
+            }
+            Groups::Indirect { buffer, offset } => self.range(buffer, offset, 12, BufferUses::INDIRECT),
+        }
+    }
 }
 
-fn drawn_and_bound(command: &Command) -> Option<String> {
-    let both = accesses(command)
-        .into_iter()
-        .find(|(_, access)| access.contains(Access::TARGET) && *access != Access::TARGET)?;
-    Some(format!("{:?} is drawn to and bound in the same pass", both.0))
+/// Whether a part lies within a buffer.
+fn within(desc: &BufferDesc, offset: u64, bytes: u64) -> Rule {
+    match offset.checked_add(bytes) {
+        Some(end) if end <= desc.bytes => Ok(()),
+        _ => Err(format!("`{}`: {bytes} bytes from byte {offset} on, it has {}", desc.label, desc.bytes)),
+    }
 }

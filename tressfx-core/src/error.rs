@@ -1,8 +1,8 @@
-//! What can go wrong on a GPU that the caller could not foresee.
-//!
-//! Mistakes of the program (a missing binding, a stale id) panic instead, with the label of the pass.
+//! What can go wrong on a GPU, and what a caller can do wrong.
 
-use crate::backend::Need;
+use std::fmt;
+
+use crate::format::Format;
 
 /// The name of a resource or a pass: the same word in the source, the profiler and the tests.
 pub type Label = &'static str;
@@ -11,6 +11,14 @@ pub type Label = &'static str;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// The caller broke a rule of the contract. Nothing was recorded or made.
+    #[error("{place}: {message}")]
+    Rule {
+        /// Which command of a list, by number and name; or the label of what was to be made.
+        place: String,
+        /// Which rule, with the binding or the range.
+        message: String,
+    },
     /// An allocation failed.
     #[error("{label}: the device has no memory left for {bytes} bytes")]
     OutOfMemory {
@@ -59,5 +67,77 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// A broken rule.
+    pub fn rule(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::Rule { place: place.into(), message: message.into() }
+    }
+}
+
 /// A result of the contract.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Something that a technique asks of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Need {
+    /// Compute passes.
+    Compute,
+    /// Raster passes.
+    Raster,
+    /// Bytes that come back.
+    ReadBack,
+    /// Fragment shaders that write storage buffers.
+    FragmentWrites,
+    /// A format that can be drawn to.
+    Target(Format),
+    /// So many storage buffers in one stage.
+    StorageBuffers(u32),
+    /// So many textures that one compute pass writes.
+    StorageTextures(u32),
+    /// One storage binding of so many bytes.
+    StorageBindingBytes(u64),
+    /// One uniform binding of so many bytes.
+    UniformBindingBytes(u64),
+    /// One buffer of so many bytes.
+    BufferBytes(u64),
+    /// A texture with an edge of so many texels.
+    TextureEdge(u32),
+    /// So many colour targets in one pass.
+    ColorTargets(u32),
+    /// So many threads in one compute group.
+    GroupThreads(u32),
+    /// So many threads of a compute group along one axis.
+    GroupSize {
+        /// 0 is x, 1 is y, 2 is z.
+        axis: usize,
+        /// Threads along it.
+        threads: u32,
+    },
+    /// So many bytes that a compute group shares.
+    GroupMemory(u32),
+}
+
+impl fmt::Display for Need {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Compute => out.write_str("compute passes"),
+            Self::Raster => out.write_str("raster passes"),
+            Self::ReadBack => out.write_str("reading back"),
+            Self::FragmentWrites => out.write_str("fragment shaders that write storage buffers"),
+            Self::Target(format) => write!(out, "targets of the format {format:?}"),
+            Self::StorageBuffers(count) => write!(out, "{count} storage buffers in one stage"),
+            Self::StorageTextures(count) => write!(out, "{count} storage textures in one stage"),
+            Self::StorageBindingBytes(bytes) => write!(out, "a storage binding of {bytes} bytes"),
+            Self::UniformBindingBytes(bytes) => write!(out, "a uniform binding of {bytes} bytes"),
+            Self::BufferBytes(bytes) => write!(out, "a buffer of {bytes} bytes"),
+            Self::TextureEdge(texels) => write!(out, "a texture edge of {texels} texels"),
+            Self::ColorTargets(count) => write!(out, "{count} colour targets in one pass"),
+            Self::GroupThreads(threads) => write!(out, "groups of {threads} threads"),
+            Self::GroupSize { axis, threads } => {
+                write!(out, "groups of {threads} threads along {}", ["x", "y", "z"].get(*axis).unwrap_or(&"?"))
+            }
+            Self::GroupMemory(bytes) => write!(out, "{bytes} bytes of group memory"),
+        }
+    }
+}

@@ -8,12 +8,12 @@ use std::collections::HashMap;
 use std::ops::BitOr;
 
 use crate::id::Resource;
-use crate::pass::{Command, Draw, Groups, PassList};
+use crate::pass::{Command, Count, Draw, Groups, PassList};
 use crate::shader::{Bindings, Shader, SlotKind};
 
 /// Kinds of access, as a set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Access(u8);
+pub struct Access(u16);
 
 impl Access {
     /// No access.
@@ -32,8 +32,7 @@ impl Access {
     pub const COPY_WRITE: Self = Self(1 << 5);
     /// Drawn to, as a colour or depth target.
     pub const TARGET: Self = Self(1 << 6);
-
-    /// Read as the number of groups of a compute pass.
+    /// Read as the number of groups of a compute pass, or of vertices and instances of a draw.
     pub const INDIRECT_READ: Self = Self(1 << 7);
 
     const WRITES: Self = Self(1 << 1 | 1 << 3 | 1 << 5 | 1 << 6);
@@ -73,7 +72,7 @@ pub struct Wait {
 }
 
 /// The state of one resource.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct State {
     /// The last write.
     written: Access,
@@ -92,6 +91,8 @@ pub enum Layout {
     Target,
     /// As shaders read it.
     Sampled,
+    /// As compute passes write it.
+    Storage,
     /// As it is copied from.
     CopySource,
     /// As it is copied to.
@@ -107,6 +108,8 @@ impl Layout {
             Self::CopyTarget
         } else if access.contains(Access::COPY_READ) {
             Self::CopySource
+        } else if access.writes() {
+            Self::Storage
         } else {
             Self::Sampled
         }
@@ -117,7 +120,13 @@ impl Layout {
 #[derive(Clone, Debug, Default)]
 pub struct Hazards {
     states: HashMap<Resource, State>,
+    /// States as they were when the recording under way began, of what it has changed.
+    changed: HashMap<Resource, Option<State>>,
 }
+
+/// What a recording has changed: for one that is thrown away.
+#[derive(Clone, Debug, Default)]
+pub struct Undo(HashMap<Resource, Option<State>>);
 
 impl Hazards {
     /// What must be waited for before `command`, one entry a resource; empty if nothing.
@@ -132,19 +141,42 @@ impl Hazards {
     /// Forgets a destroyed resource.
     pub fn forget(&mut self, resource: Resource) {
         self.states.remove(&resource);
+        self.changed.remove(&resource);
+    }
+
+    /// Ends a recording: what it has changed since the last one ended, to be given to [`Hazards::undo`] if it never runs.
+    pub fn end_recording(&mut self) -> Undo {
+        Undo(std::mem::take(&mut self.changed))
+    }
+
+    /// Takes a recording back that will never run. Recordings are taken back from the newest on, and none is under way.
+    pub fn undo(&mut self, Undo(states): Undo) {
+        for (resource, state) in states {
+            match state {
+                Some(state) => drop(self.states.insert(resource, state)),
+                None => drop(self.states.remove(&resource)),
+            }
+        }
+    }
+
+    /// The state of a resource, to be changed.
+    fn state(&mut self, resource: Resource) -> &mut State {
+        self.changed.entry(resource).or_insert_with(|| self.states.get(&resource).copied());
+        self.states.entry(resource).or_default()
     }
 
     /// Gives an imported resource back to its owner: what was done to it, which the owner's next use has to wait for. It is
     /// forgotten.
     pub fn release(&mut self, resource: Resource) -> Access {
-        let state = self.states.remove(&resource).unwrap_or_default();
+        let state = std::mem::take(self.state(resource));
+        self.states.remove(&resource);
         state.written | state.read
     }
 
     /// What must be waited for before `resource` is used so: for uses that no command says. A backend that fills a new
     /// resource with zeros says it here, and one that takes a resource from an engine says here what the engine did to it.
     pub fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
-        let state = self.states.entry(resource).or_default();
+        let state = self.state(resource);
         let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
         // A change of layout writes, whatever it is changed for, and the use that it was changed for has seen it.
         if access.writes() || state.layout != layout {
@@ -171,6 +203,10 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
             found.push(((*src).into(), Access::COPY_READ));
             found.push(((*dst).into(), Access::COPY_WRITE));
         }
+        Command::CopyToTexture { src, dst, .. } => {
+            found.push(((*src).into(), Access::COPY_READ));
+            found.push(((*dst).into(), Access::COPY_WRITE));
+        }
         Command::ReadBuffer { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
         Command::ReadTexture { src, .. } => found.push(((*src).into(), Access::COPY_READ)),
         Command::Compute(pass) => {
@@ -180,8 +216,11 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
             bound(&mut found, &pass.kernel.shader, &pass.bindings, [Access::COMPUTE_READ, Access::COMPUTE_WRITE]);
         }
         Command::Raster(pass) => {
-            for Draw { kernel, bindings, .. } in &pass.draws {
-                bound(&mut found, &kernel.shader, bindings, [Access::RASTER_READ, Access::RASTER_WRITE]);
+            for Draw { pipeline, bindings, count } in &pass.draws {
+                bound(&mut found, &pipeline.shader, bindings, [Access::RASTER_READ, Access::RASTER_WRITE]);
+                if let Count::Indirect { buffer, .. } = count {
+                    found.push(((*buffer).into(), Access::INDIRECT_READ));
+                }
             }
             let depth = pass.depth.iter().map(|(texture, _)| texture);
             let targets = pass.colors.iter().map(|(texture, _)| texture).chain(depth);
@@ -192,9 +231,13 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
 }
 
 fn bound(found: &mut Vec<(Resource, Access)>, shader: &Shader, bindings: &Bindings, [read, write]: [Access; 2]) {
-    for (slot, &resource) in shader.slots.iter().zip(bindings.resources()) {
-        let access = if slot.kind == SlotKind::ReadWrite { read | write } else { read };
-        found.push((resource, access));
+    for (slot, binding) in shader.slots.iter().zip(bindings.all()) {
+        let access = match slot.kind {
+            SlotKind::ReadWrite => read | write,
+            SlotKind::StorageTexture(_) => write,
+            _ => read,
+        };
+        found.extend(binding.resource().map(|resource| (resource, access)));
     }
 }
 
@@ -212,7 +255,7 @@ fn merge(found: Vec<(Resource, Access)>) -> Vec<(Resource, Access)> {
 /// The hazards of a whole list, one entry a command: for tests and for printing.
 pub fn of_list(list: &PassList) -> Vec<Vec<Wait>> {
     let mut hazards = Hazards::default();
-    list.commands.iter().map(|command| hazards.before(command)).collect()
+    list.commands().iter().map(|command| hazards.before(command)).collect()
 }
 
 #[cfg(test)]
@@ -285,6 +328,25 @@ mod tests {
         assert_eq!(hazards.release(a), Access::COMPUTE_WRITE | Access::RASTER_READ);
         assert_eq!(hazards.release(a), Access::NONE);
         assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
+    }
+
+    #[test]
+    fn a_recording_that_is_taken_back_leaves_everything_as_it_was() {
+        let [a, b] = ids();
+        let mut hazards = Hazards::default();
+        hazards.touch(a, Access::COMPUTE_WRITE);
+        let first = hazards.end_recording();
+        hazards.touch(a, Access::COMPUTE_READ);
+        hazards.touch(a, Access::COPY_WRITE);
+        hazards.touch(b, Access::COPY_WRITE);
+        let second = hazards.end_recording();
+        hazards.undo(second);
+        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
+        assert_eq!(hazards.touch(b, Access::COMPUTE_READ), None);
+        let third = hazards.end_recording();
+        hazards.undo(third);
+        hazards.undo(first);
+        assert!(hazards.states.is_empty());
     }
 
     #[test]

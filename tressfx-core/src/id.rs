@@ -1,10 +1,14 @@
 //! Ids of resources: small, `Copy`, and never silently reused.
 
 use std::hash::Hash;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use crate::epoch;
 
 /// A place in a [`Slots`] arena and the generation that lives there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Slot {
+    arena: u32,
     index: u32,
     generation: u32,
 }
@@ -12,12 +16,18 @@ pub struct Slot {
 macro_rules! id {
     ($(#[$doc:meta] $name:ident)*) => {$(
         #[$doc]
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub struct $name(pub Slot);
 
         impl From<Slot> for $name {
             fn from(slot: Slot) -> Self {
                 Self(slot)
+            }
+        }
+
+        impl std::fmt::Debug for $name {
+            fn fmt(&self, out: &mut std::fmt::Formatter) -> std::fmt::Result {
+                write!(out, "{}({}.{})", stringify!($name), self.0.index, self.0.generation)
             }
         }
     )*};
@@ -32,12 +42,12 @@ id! {
     PipelineId
 }
 
-/// Anything that a shader can be given.
+/// Anything that holds memory of a backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Resource {
     /// A storage or uniform buffer.
     Buffer(BufferId),
-    /// A sampled texture.
+    /// A texture.
     Texture(TextureId),
 }
 
@@ -53,100 +63,154 @@ impl From<TextureId> for Resource {
     }
 }
 
+#[derive(Debug)]
+struct Place<T> {
+    generation: u32,
+    value: Option<T>,
+    /// The last epoch whose lists may name the value, once it was retired.
+    retired: Option<u64>,
+}
+
 /// An arena that a backend keeps its resources in.
 ///
-/// An id that outlives its resource is noticed: its generation no longer matches, and the access panics with the name of
-/// the operation instead of touching whatever was put in the same place later.
+/// An id that outlives its resource, or that is of another arena, finds nothing: not what was put in the same place later.
 #[derive(Debug)]
 pub struct Slots<T> {
-    entries: Vec<(u32, Option<T>)>,
+    arena: u32,
+    places: Vec<Place<T>>,
     free: Vec<u32>,
+    /// Places whose values were retired and not swept yet.
+    retired: Vec<u32>,
 }
 
 impl<T> Default for Slots<T> {
     fn default() -> Self {
-        Self { entries: Vec::new(), free: Vec::new() }
+        static ARENAS: AtomicU32 = AtomicU32::new(0);
+        let arena = ARENAS.fetch_add(1, Ordering::Relaxed);
+        Self { arena, places: Vec::new(), free: Vec::new(), retired: Vec::new() }
     }
 }
 
 impl<T> Slots<T> {
     /// Stores `value` and names its place.
     pub fn insert(&mut self, value: T) -> Slot {
-        if let Some(index) = self.free.pop() {
-            let entry = &mut self.entries[index as usize];
-            entry.1 = Some(value);
-            return Slot { index, generation: entry.0 };
-        }
-        self.entries.push((0, Some(value)));
-        Slot { index: (self.entries.len() - 1) as u32, generation: 0 }
+        let index = self.free.pop().unwrap_or_else(|| {
+            self.places.push(Place { generation: 0, value: None, retired: None });
+            (self.places.len() - 1) as u32
+        });
+        let place = &mut self.places[index as usize];
+        (place.value, place.retired) = (Some(value), None);
+        Slot { arena: self.arena, index, generation: place.generation }
     }
 
-    /// Takes the value out; the id is stale from now on. `None` if it was stale before.
-    pub fn remove(&mut self, slot: Slot) -> Option<T> {
-        let entry = self.entries.get_mut(slot.index as usize)?;
-        if entry.0 != slot.generation {
+    fn place(&self, slot: Slot) -> Option<&Place<T>> {
+        let place = self.places.get(slot.index as usize)?;
+        (slot.arena == self.arena && place.generation == slot.generation).then_some(place)
+    }
+
+    /// The value, also if it was retired and not swept yet; `None` if the id is stale or of another arena.
+    pub fn get(&self, slot: Slot) -> Option<&T> {
+        self.place(slot)?.value.as_ref()
+    }
+
+    /// As [`Slots::get`], to be changed.
+    pub fn get_mut(&mut self, slot: Slot) -> Option<&mut T> {
+        self.place(slot)?;
+        self.places[slot.index as usize].value.as_mut()
+    }
+
+    /// The value, if a list of that epoch may name it.
+    pub(crate) fn get_in(&self, slot: Slot, epoch: u64) -> Option<&T> {
+        let place = self.place(slot)?;
+        place.value.as_ref().filter(|_| place.retired.is_none_or(|last| epoch <= last))
+    }
+
+    /// Marks the value as not to be named by lists that are begun from now on. `None` if it was marked before, or there is
+    /// none.
+    pub fn retire(&mut self, slot: Slot) -> Option<&T> {
+        if self.place(slot)?.retired.is_some() {
             return None;
         }
-        let value = entry.1.take()?;
-        entry.0 += 1;
-        self.free.push(slot.index);
-        Some(value)
+        let place = &mut self.places[slot.index as usize];
+        place.value.as_ref()?;
+        place.retired = Some(epoch::end());
+        self.retired.push(slot.index);
+        place.value.as_ref()
     }
 
-    /// The value, or `None` if the id is stale.
-    pub fn get(&self, slot: Slot) -> Option<&T> {
-        self.entries.get(slot.index as usize).filter(|entry| entry.0 == slot.generation)?.1.as_ref()
-    }
-
-    /// The value, to be changed, or `None` if the id is stale.
-    pub fn get_mut(&mut self, slot: Slot) -> Option<&mut T> {
-        self.entries.get_mut(slot.index as usize).filter(|entry| entry.0 == slot.generation)?.1.as_mut()
-    }
-
-    /// The value.
-    ///
-    /// # Panics
-    /// If the id is stale: a mistake of the program, not of its input.
-    pub fn expect(&self, slot: Slot, what: &str) -> &T {
-        self.get(slot).unwrap_or_else(|| panic!("{what}: the id {slot:?} is stale, its resource was destroyed"))
+    /// Takes out the retired values that no list can name any more.
+    pub fn sweep(&mut self) -> Vec<(Slot, T)> {
+        let over = |place: &Place<T>| place.retired.is_some_and(|last| !epoch::is_listed(last));
+        let gone: Vec<u32> = self.retired.extract_if(.., |&mut index| over(&self.places[index as usize])).collect();
+        gone.into_iter().filter_map(|index| self.take(index)).collect()
     }
 
     /// Takes all values out, in no particular order; all ids are stale from now on.
     pub fn drain(&mut self) -> impl Iterator<Item = T> {
-        let live = self.entries.iter().enumerate().filter(|(_, entry)| entry.1.is_some());
-        let slots: Vec<_> = live.map(|(index, entry)| Slot { index: index as u32, generation: entry.0 }).collect();
-        slots.into_iter().filter_map(|slot| self.remove(slot))
+        self.retired.clear();
+        let all = 0..self.places.len() as u32;
+        all.filter_map(|index| self.take(index).map(|(_, value)| value))
+    }
+
+    fn take(&mut self, index: u32) -> Option<(Slot, T)> {
+        let place = &mut self.places[index as usize];
+        let value = place.value.take()?;
+        let slot = Slot { arena: self.arena, index, generation: place.generation };
+        // A place whose generations are used up is not used again.
+        if let Some(next) = place.generation.checked_add(1) {
+            place.generation = next;
+            self.free.push(index);
+        }
+        Some((slot, value))
     }
 
     /// All values, in no particular order.
     pub fn values(&self) -> impl Iterator<Item = &T> {
-        self.entries.iter().filter_map(|entry| entry.1.as_ref())
+        self.places.iter().filter_map(|place| place.value.as_ref())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::epoch::Epoch;
 
     #[test]
     fn a_reused_place_has_a_new_generation() {
         let mut slots = Slots::default();
         let first = slots.insert('a');
-        assert_eq!(slots.remove(first), Some('a'));
+        assert_eq!(slots.retire(first), Some(&'a'));
+        assert_eq!(slots.retire(first), None, "once");
+        while slots.get(first).is_some() {
+            // Lists of other tests may be of an older epoch.
+            slots.sweep();
+        }
         let second = slots.insert('b');
         assert_ne!(first, second);
-        assert_eq!(slots.get(first), None);
-        assert_eq!(slots.get(second), Some(&'b'));
-        assert_eq!(slots.remove(first), None, "a stale id must not remove the newer value");
-        assert_eq!(slots.values().count(), 1);
+        assert_eq!((slots.get(first), slots.get(second)), (None, Some(&'b')));
+        assert_eq!(slots.retire(first), None, "a stale id must not retire the newer value");
+        assert_eq!(slots.drain().collect::<Vec<_>>(), ['b']);
+        assert_eq!(slots.get(second), None);
     }
 
     #[test]
-    #[should_panic(expected = "upload: the id")]
-    fn a_stale_id_panics_with_the_name_of_the_operation() {
+    fn an_id_of_another_arena_finds_nothing() {
+        let (mut one, mut other) = (Slots::default(), Slots::default());
+        let (mine, theirs) = (one.insert(1), other.insert(2));
+        assert_eq!((one.get(mine), one.get(theirs)), (Some(&1), None));
+        assert_eq!(one.retire(theirs), None);
+        assert_eq!(one.get_mut(theirs), None);
+    }
+
+    #[test]
+    fn a_retired_value_lives_on_for_the_lists_that_were_begun_before() {
         let mut slots = Slots::default();
-        let slot = slots.insert(1);
-        slots.remove(slot);
-        slots.expect(slot, "upload");
+        let slot = slots.insert('a');
+        let before = Epoch::now();
+        slots.retire(slot);
+        let after = Epoch::now();
+        assert_eq!(slots.sweep(), []);
+        assert_eq!(slots.get_in(slot, before.number()), Some(&'a'));
+        assert_eq!(slots.get_in(slot, after.number()), None);
     }
 }

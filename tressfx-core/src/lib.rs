@@ -9,7 +9,9 @@ pub mod asset;
 pub mod backend;
 pub mod builtin;
 pub mod check;
+mod epoch;
 pub mod error;
+mod format;
 pub mod hazards;
 pub mod id;
 pub mod mesh;
@@ -22,5 +24,7 @@ pub mod strands;
 pub mod view;
 
 pub use error::{Error, Result};
+/// The vectors, matrices and rotations that all crates use.
+pub use glam;
 /// The shader compiler whose modules a [`shader::Shader`] holds.
 pub use naga;

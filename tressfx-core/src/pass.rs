@@ -1,14 +1,16 @@
 //! A frame as plain data: commands that name resources by id.
 
+use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use bytemuck::NoUninit;
 
-use crate::backend::Kernel;
+use crate::epoch::Epoch;
 use crate::error::Label;
 use crate::id::{BufferId, TextureId};
-use crate::shader::Bindings;
+use crate::shader::{Bindings, Kernel, RasterPipeline};
 
 /// Names one read-back; unique in the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,7 +57,26 @@ pub enum Groups {
     Grid(Grid),
     /// As many as a buffer says once its turn has come: three `u32` for x, y and z, each at most [`Grid::MAX_GROUPS`].
     Indirect {
-        /// A buffer made with [`BufferUse::Indirect`](crate::backend::BufferUse::Indirect).
+        /// A buffer with [`BufferUses::INDIRECT`](crate::backend::BufferUses::INDIRECT).
+        buffer: BufferId,
+        /// Where in it; a multiple of 4.
+        offset: u64,
+    },
+}
+
+/// How much a draw draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Count {
+    /// So much.
+    Direct {
+        /// Vertices of each instance, three to a triangle.
+        vertices: u32,
+        /// Instances.
+        instances: u32,
+    },
+    /// As much as a buffer says once its turn has come: four `u32` for vertices, instances, 0 and 0.
+    Indirect {
+        /// A buffer with [`BufferUses::INDIRECT`](crate::backend::BufferUses::INDIRECT).
         buffer: BufferId,
         /// Where in it; a multiple of 4.
         offset: u64,
@@ -73,6 +94,7 @@ pub enum Load<T> {
 
 /// A compute pass.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ComputePass {
     /// What runs.
     pub kernel: Kernel,
@@ -80,23 +102,55 @@ pub struct ComputePass {
     pub bindings: Bindings,
     /// How often it runs.
     pub groups: Groups,
+    /// Whose pass it is: see [`PassList::scope`].
+    pub scope: Option<Arc<str>>,
+}
+
+impl ComputePass {
+    /// A pass of nobody in particular.
+    pub fn new(kernel: Kernel, bindings: Bindings, groups: Groups) -> Self {
+        Self { kernel, bindings, groups, scope: None }
+    }
 }
 
 /// One draw of a raster pass.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Draw {
     /// What runs.
-    pub kernel: Kernel,
+    pub pipeline: RasterPipeline,
     /// What it reads and writes.
     pub bindings: Bindings,
-    /// Vertices of each instance, three to a triangle.
-    pub vertices: u32,
-    /// Instances.
-    pub instances: u32,
+    /// How much.
+    pub count: Count,
+}
+
+impl Draw {
+    /// So many vertices of so many instances.
+    pub fn new(pipeline: &RasterPipeline, bindings: &Bindings, vertices: u32, instances: u32) -> Self {
+        let count = Count::Direct { vertices, instances };
+        Self { pipeline: pipeline.clone(), bindings: bindings.clone(), count }
+    }
+
+    /// As much as `buffer` says from byte `offset` on.
+    pub fn indirect(pipeline: &RasterPipeline, bindings: &Bindings, buffer: BufferId, offset: u64) -> Self {
+        let count = Count::Indirect { buffer, offset };
+        Self { pipeline: pipeline.clone(), bindings: bindings.clone(), count }
+    }
+}
+
+/// A part of the targets, in pixels from their upper left corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Viewport {
+    /// The upper left corner.
+    pub origin: [u32; 2],
+    /// Width and height.
+    pub size: [u32; 2],
 }
 
 /// Draws into the same targets, which are all of one size. Without draws it only clears.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RasterPass {
     /// Its name.
     pub label: Label,
@@ -104,12 +158,50 @@ pub struct RasterPass {
     pub colors: Vec<(TextureId, Load<[f32; 4]>)>,
     /// The depth target and how it begins.
     pub depth: Option<(TextureId, Load<f32>)>,
+    /// Where clip space lies, and beyond which nothing is drawn; `None`: the whole targets. Targets are cleared whole.
+    pub viewport: Option<Viewport>,
     /// What is drawn, in order, by pipelines that were made for the formats of the targets.
     pub draws: Vec<Draw>,
+    /// Whose pass it is: see [`PassList::scope`].
+    pub scope: Option<Arc<str>>,
 }
 
-/// One command of a frame.
+impl RasterPass {
+    /// A pass without targets and draws.
+    pub fn new(label: Label) -> Self {
+        Self { label, colors: Vec::new(), depth: None, viewport: None, draws: Vec::new(), scope: None }
+    }
+
+    /// With one more colour target.
+    #[must_use]
+    pub fn color(mut self, target: TextureId, load: Load<[f32; 4]>) -> Self {
+        self.colors.push((target, load));
+        self
+    }
+
+    /// With a depth target.
+    #[must_use]
+    pub fn depth(self, target: TextureId, load: Load<f32>) -> Self {
+        Self { depth: Some((target, load)), ..self }
+    }
+
+    /// Within a part of the targets.
+    #[must_use]
+    pub fn viewport(self, viewport: Viewport) -> Self {
+        Self { viewport: Some(viewport), ..self }
+    }
+
+    /// With one more draw.
+    #[must_use]
+    pub fn draw(mut self, draw: Draw) -> Self {
+        self.draws.push(draw);
+        self
+    }
+}
+
+/// One command of a frame. A backend that does not know a command answers with an error.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Command {
     /// Bytes of the list go into a buffer.
     Upload {
@@ -142,6 +234,17 @@ pub enum Command {
         /// so many bytes, a multiple of 4.
         bytes: u64,
     },
+    /// Rows of a buffer become the whole of a texture, which holds no depth.
+    CopyToTexture {
+        /// From this buffer,
+        src: BufferId,
+        /// from this byte, a multiple of 8,
+        offset: u64,
+        /// so many bytes from row to row, a multiple of [`ROW_ALIGNMENT`],
+        row_bytes: u32,
+        /// into this texture.
+        dst: TextureId,
+    },
     /// A kernel runs.
     Compute(ComputePass),
     /// Triangles are drawn.
@@ -166,15 +269,56 @@ pub enum Command {
     },
 }
 
+/// What the distance of rows that are copied to a texture is a multiple of, in bytes.
+pub const ROW_ALIGNMENT: u32 = 256;
+
+impl Command {
+    /// Its name: the label of a pass.
+    pub fn name(&self) -> Label {
+        match self {
+            Self::Upload { .. } => "upload",
+            Self::Clear { .. } => "clear",
+            Self::Copy { .. } => "copy",
+            Self::CopyToTexture { .. } => "copy to texture",
+            Self::Compute(pass) => pass.kernel.label(),
+            Self::Raster(pass) => pass.label,
+            Self::ReadBuffer { .. } => "read buffer",
+            Self::ReadTexture { .. } => "read texture",
+        }
+    }
+
+    /// Whether it is a compute or raster pass: what is timed.
+    pub fn is_pass(&self) -> bool {
+        matches!(self, Self::Compute(_) | Self::Raster(_))
+    }
+
+    /// Whose pass it is.
+    pub fn scope(&self) -> Option<&Arc<str>> {
+        match self {
+            Self::Compute(pass) => pass.scope.as_ref(),
+            Self::Raster(pass) => pass.scope.as_ref(),
+            _ => None,
+        }
+    }
+}
+
 /// The commands of a frame, in the order in which they take effect.
 ///
-/// It can be printed, compared, stored and run again. Nothing happens until a backend runs it.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// It can be printed, compared, stored and run again. Nothing happens until a backend runs it. As long as it holds commands,
+/// whatever is destroyed stays alive for it: clear or drop a list that is not needed any more.
+#[derive(Clone, Default)]
 pub struct PassList {
-    /// The commands.
-    pub commands: Vec<Command>,
-    /// The bytes that the uploads name.
-    pub bytes: Vec<u8>,
+    commands: Vec<Command>,
+    bytes: Vec<u8>,
+    scope: Option<Arc<str>>,
+    /// Since the first command.
+    epoch: Option<Epoch>,
+}
+
+impl PartialEq for PassList {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.commands, &self.bytes) == (&other.commands, &other.bytes)
+    }
 }
 
 impl PassList {
@@ -183,74 +327,143 @@ impl PassList {
         Self::default()
     }
 
+    /// The commands.
+    pub fn commands(&self) -> &[Command] {
+        &self.commands
+    }
+
+    /// The bytes that the uploads name.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The epoch of its first command; 0 where there is none.
+    pub(crate) fn epoch(&self) -> u64 {
+        self.epoch.as_ref().map_or(0, Epoch::number)
+    }
+
     /// Forgets all commands and keeps the memory for the next frame.
     pub fn clear_commands(&mut self) {
         self.commands.clear();
         self.bytes.clear();
+        self.scope = None;
+        self.epoch = None;
+    }
+
+    /// Names whose passes are written from now on, such as a groom, in prints, profilers and [`Timing`]s.
+    ///
+    /// [`Timing`]: crate::backend::Timing
+    pub fn scope(&mut self, name: Option<Arc<str>>) {
+        self.scope = name;
+    }
+
+    /// Adds a command.
+    pub fn push(&mut self, mut command: Command) {
+        self.epoch.get_or_insert_with(Epoch::now);
+        let scope = match &mut command {
+            Command::Compute(pass) => Some(&mut pass.scope),
+            Command::Raster(pass) => Some(&mut pass.scope),
+            _ => None,
+        };
+        if let Some(scope @ None) = scope {
+            scope.clone_from(&self.scope);
+        }
+        self.commands.push(command);
     }
 
     /// Writes `data` to `dst` from byte `offset` on. Its size must be a multiple of 4.
     pub fn upload<T: NoUninit>(&mut self, dst: BufferId, offset: u64, data: &[T]) {
         let start = self.bytes.len();
         self.bytes.extend_from_slice(bytemuck::cast_slice(data));
-        self.commands.push(Command::Upload { dst, offset, data: start..self.bytes.len() });
+        self.push(Command::Upload { dst, offset, data: start..self.bytes.len() });
     }
 
     /// Makes `bytes` bytes of `dst` zero.
     pub fn clear(&mut self, dst: BufferId, offset: u64, bytes: u64) {
-        self.commands.push(Command::Clear { dst, offset, bytes });
+        self.push(Command::Clear { dst, offset, bytes });
     }
 
     /// Copies the first `bytes` bytes of `src` to the start of `dst`.
     pub fn copy(&mut self, src: BufferId, dst: BufferId, bytes: u64) {
-        self.commands.push(Command::Copy { src, src_offset: 0, dst, dst_offset: 0, bytes });
+        self.push(Command::Copy { src, src_offset: 0, dst, dst_offset: 0, bytes });
+    }
+
+    /// Copies rows of `src`, `row_bytes` apart, to a texture.
+    pub fn copy_to_texture(&mut self, src: BufferId, offset: u64, row_bytes: u32, dst: TextureId) {
+        self.push(Command::CopyToTexture { src, offset, row_bytes, dst });
     }
 
     /// Runs `kernel` over `grid`; an empty grid is left out.
     pub fn compute(&mut self, kernel: &Kernel, bindings: &Bindings, grid: Grid) {
         if !grid.is_empty() {
             let (kernel, bindings) = (kernel.clone(), bindings.clone());
-            self.commands.push(Command::Compute(ComputePass { kernel, bindings, groups: Groups::Grid(grid) }));
+            self.push(Command::Compute(ComputePass::new(kernel, bindings, Groups::Grid(grid))));
         }
     }
 
     /// Runs `kernel` over as many groups as `buffer` says from byte `offset` on.
     pub fn compute_indirect(&mut self, kernel: &Kernel, bindings: &Bindings, buffer: BufferId, offset: u64) {
         let (kernel, bindings, groups) = (kernel.clone(), bindings.clone(), Groups::Indirect { buffer, offset });
-        self.commands.push(Command::Compute(ComputePass { kernel, bindings, groups }));
+        self.push(Command::Compute(ComputePass::new(kernel, bindings, groups)));
     }
 
     /// Draws.
     pub fn raster(&mut self, pass: RasterPass) {
-        self.commands.push(Command::Raster(pass));
+        self.push(Command::Raster(pass));
     }
 
     /// Brings `bytes` bytes of `src` back.
     pub fn read_buffer(&mut self, src: BufferId, offset: u64, bytes: u64) -> Ticket {
         let ticket = Ticket::next();
-        self.commands.push(Command::ReadBuffer { src, offset, bytes, ticket });
+        self.push(Command::ReadBuffer { src, offset, bytes, ticket });
         ticket
     }
 
     /// Brings a texture back.
     pub fn read_texture(&mut self, src: TextureId) -> Ticket {
         let ticket = Ticket::next();
-        self.commands.push(Command::ReadTexture { src, ticket });
+        self.push(Command::ReadTexture { src, ticket });
         ticket
     }
 
     /// The compute and raster passes with their labels, in order.
     pub fn passes(&self) -> impl Iterator<Item = (Label, &Command)> {
-        self.commands.iter().filter_map(|command| match command {
-            Command::Compute(pass) => Some((pass.kernel.label(), command)),
-            Command::Raster(pass) => Some((pass.label, command)),
-            _ => None,
-        })
+        self.commands.iter().filter(|command| command.is_pass()).map(|command| (command.name(), command))
     }
 
     /// Labels of the compute and raster passes, in order.
     pub fn labels(&self) -> impl Iterator<Item = Label> {
         self.passes().map(|(label, _)| label)
+    }
+}
+
+impl fmt::Debug for PassList {
+    /// A frame as text, one command a line.
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(out, "{} commands, {} bytes of uploads", self.commands.len(), self.bytes.len())?;
+        for (index, command) in self.commands.iter().enumerate() {
+            write!(out, "{index:4} {}", command.name())?;
+            if let Some(scope) = command.scope() {
+                write!(out, " of {scope}")?;
+            }
+            match command {
+                Command::Upload { dst, offset, data } => writeln!(out, " {} bytes to {dst:?} at {offset}", data.len()),
+                Command::Clear { dst, offset, bytes } => writeln!(out, " {bytes} bytes of {dst:?} at {offset}"),
+                Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
+                    writeln!(out, " {bytes} bytes of {src:?} at {src_offset} to {dst:?} at {dst_offset}")
+                }
+                Command::CopyToTexture { src, offset, dst, .. } => writeln!(out, " {src:?} at {offset} to {dst:?}"),
+                Command::Compute(pass) => writeln!(out, " over {:?}, {:?}", pass.groups, pass.bindings.all()),
+                Command::Raster(pass) => {
+                    writeln!(out, " {} draws to {:?} {:?}", pass.draws.len(), pass.colors, pass.depth)
+                }
+                Command::ReadBuffer { src, offset, bytes, .. } => {
+                    writeln!(out, " {bytes} bytes of {src:?} at {offset}")
+                }
+                Command::ReadTexture { src, .. } => writeln!(out, " {src:?}"),
+            }?;
+        }
+        Ok(())
     }
 }
 

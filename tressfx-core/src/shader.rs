@@ -10,13 +10,15 @@ mod glsl;
 mod hlsl;
 mod layout;
 mod msl;
+mod pipeline;
 mod reflect;
 mod spirv;
 
-pub use bindings::Bindings;
+pub use bindings::{Binding, Bindings, Sampler};
 pub use compose::{Module, ShaderSource, Specialization, shared_modules};
 pub use emit::{Emitted, Extra, Language};
 pub use layout::{FieldLayout, GpuStruct, StructLayout};
+pub use pipeline::{Kernel, RasterPipeline};
 pub use reflect::{ShaderSlot, SlotKind, Stages};
 pub use spirv::SpirvOptions;
 
@@ -81,7 +83,54 @@ impl Shader {
     /// Storage buffers that the shader binds in its busiest stage.
     pub fn storage_buffers(&self) -> u32 {
         let count =
-            |stage: Stages| self.slots.iter().filter(|slot| slot.is_storage() && slot.stages.has(stage)).count();
+            |stage: Stages| self.slots.iter().filter(|slot| slot.is_storage() && slot.stages.intersects(stage)).count();
         [Stages::COMPUTE, Stages::VERTEX, Stages::FRAGMENT].into_iter().map(count).max().unwrap_or(0) as u32
+    }
+
+    /// Textures that a compute pass of it writes.
+    pub fn storage_textures(&self) -> u32 {
+        self.slots.iter().filter(|slot| matches!(slot.kind, SlotKind::StorageTexture(_))).count() as u32
+    }
+
+    /// Whether its fragment stage writes buffers.
+    pub fn writes_in_fragments(&self) -> bool {
+        self.slots.iter().any(|slot| slot.kind.is_written() && slot.stages.intersects(Stages::FRAGMENT))
+    }
+
+    /// Threads of a compute group along x, y and z, and bytes that a group shares.
+    ///
+    /// # Errors
+    /// As [`Shader::entry_point`].
+    pub fn group(&self) -> Result<([u32; 3], u32)> {
+        let size = self.entry_point(naga::ShaderStage::Compute)?.workgroup_size;
+        let index = self.module.entry_points.iter().position(|entry| entry.stage == naga::ShaderStage::Compute);
+        Ok((size, index.map_or(0, |index| reflect::group_memory(&self.module, &self.info, index))))
+    }
+
+    /// Whether it has a fragment stage.
+    pub fn has_fragment_stage(&self) -> bool {
+        self.module.entry_points.iter().any(|entry| entry.stage == naga::ShaderStage::Fragment)
+    }
+
+    /// The colours that the fragment stage gives: target and type in the WGSL.
+    ///
+    /// # Errors
+    /// As [`Shader::entry_point`], or if the fragment stage is given what the vertex stage does not hand on.
+    pub fn colors(&self) -> Result<Vec<(u32, String)>> {
+        let vertex = self.entry_point(naga::ShaderStage::Vertex)?;
+        if !self.has_fragment_stage() {
+            return Ok(Vec::new());
+        }
+        let fragment = self.entry_point(naga::ShaderStage::Fragment)?;
+        let handed = reflect::outputs(&self.module, vertex);
+        match reflect::inputs(&self.module, fragment).into_iter().find(|input| !handed.contains(input)) {
+            Some((location, ty)) => Err(Error::Shader {
+                label: self.label,
+                message: format!(
+                    "the fragment stage is given {ty} at location {location}, the vertex stage hands on {handed:?}"
+                ),
+            }),
+            None => Ok(reflect::outputs(&self.module, fragment)),
+        }
     }
 }

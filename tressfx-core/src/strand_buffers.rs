@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::backend::{Backend, BufferDesc, BufferUse};
+use crate::backend::{Backend, BufferDesc, Owner};
 use crate::error::Result;
 use crate::id::BufferId;
 use crate::pass::PassList;
@@ -78,20 +78,27 @@ impl StrandBuffers {
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size.
     pub fn new(backend: &mut dyn Backend, shape: StrandShape, center: Vec3) -> Result<Self> {
-        let mut create = |label, bytes_each: u64, count: u32| {
-            backend.create_buffer(&BufferDesc {
-                label,
-                bytes: (bytes_each * u64::from(count)).max(16),
-                usage: BufferUse::Storage,
+        let made = Owner::build(backend, |backend| {
+            let mut create = |label, bytes_each: u64, count: u32| {
+                backend.create_buffer(&BufferDesc::storage(label, (bytes_each * u64::from(count)).max(16)))
+            };
+            Ok(Self {
+                shape,
+                center,
+                positions: create("hair.positions", 16, shape.strand_vertices())?,
+                tangents: create("hair.tangents", 16, shape.strand_vertices())?,
+                thickness: create("hair.thickness", 4, shape.guide_vertices())?,
             })
-        };
-        Ok(Self {
-            shape,
-            center,
-            positions: create("hair.positions", 16, shape.strand_vertices())?,
-            tangents: create("hair.tangents", 16, shape.strand_vertices())?,
-            thickness: create("hair.thickness", 4, shape.guide_vertices())?,
+        });
+        made.map(|(made, owner)| {
+            owner.leave();
+            made
         })
+    }
+
+    /// Frees the buffers.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.positions, self.tangents, self.thickness].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 
     /// Puts the rest pose into the buffers.

@@ -58,9 +58,11 @@ impl Language {
             (Self::Wgsl, _) => format!("@group(0) @binding({number})"),
             (Self::Spirv, _) => format!("DescriptorSet 0 Binding {number}"),
             (Self::Hlsl, SlotKind::Uniform) => format!("register(b{number})"),
-            (Self::Hlsl, SlotKind::ReadWrite) => format!("register(u{number})"),
+            (Self::Hlsl, kind) if kind.is_written() => format!("register(u{number})"),
+            (Self::Hlsl, SlotKind::Sampler) => format!("register(s{number})"),
             (Self::Hlsl, _) => format!("register(t{number})"),
-            (Self::Msl, SlotKind::Texture | SlotKind::DepthTexture) => format!("[[texture({number})]]"),
+            (Self::Msl, SlotKind::Sampler) => format!("[[sampler({number})]]"),
+            (Self::Msl, kind) if kind.is_texture() => format!("[[texture({number})]]"),
             (Self::Msl, _) => format!("[[buffer({number})]]"),
             (Self::Glsl | Self::Essl, _) => format!("binding = {number}"),
         }
@@ -128,7 +130,7 @@ impl Shader {
     /// The slots that a stage sees.
     pub fn slots_of(&self, stage: ShaderStage) -> impl Iterator<Item = &ShaderSlot> {
         let stage = super::Stages::of(stage).unwrap_or_default();
-        self.slots.iter().filter(move |slot| slot.stages.has(stage))
+        self.slots.iter().filter(move |slot| slot.stages.intersects(stage))
     }
 
     fn header(&self, stage: ShaderStage, language: Language, emitted: &Emitted) -> String {

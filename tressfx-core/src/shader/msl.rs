@@ -53,7 +53,12 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage) -> Result<Emitted> {
 fn target(slot: &ShaderSlot) -> (naga::ResourceBinding, msl::BindTarget) {
     let number = Some(slot.binding as msl::Slot);
     let target = match slot.kind {
-        SlotKind::Texture | SlotKind::DepthTexture => msl::BindTarget { texture: number, ..Default::default() },
+        SlotKind::Sampler => {
+            msl::BindTarget { sampler: number.map(msl::BindSamplerTarget::Resource), ..Default::default() }
+        }
+        kind if kind.is_texture() => {
+            msl::BindTarget { texture: number, mutable: kind.is_written(), ..Default::default() }
+        }
         kind => msl::BindTarget { buffer: number, mutable: kind == SlotKind::ReadWrite, ..Default::default() },
     };
     (naga::ResourceBinding { group: 0, binding: slot.binding }, target)

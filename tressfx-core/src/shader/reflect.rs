@@ -3,9 +3,13 @@
 use std::fmt;
 
 use naga::common::wgsl::TypeContext;
-use naga::{AddressSpace, GlobalVariable, ImageClass, ShaderStage, StorageAccess, TypeInner};
+use naga::{
+    AddressSpace, Binding, GlobalVariable, Handle, ImageClass, ScalarKind, ShaderStage, StorageAccess, StorageFormat,
+    TypeInner,
+};
 
 use crate::error::{Error, Label, Result};
+use crate::format::Format;
 
 /// What a shader binds in one place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,7 +24,7 @@ pub struct ShaderSlot {
     pub type_name: String,
     /// Which stages see it.
     pub stages: Stages,
-    /// Bytes that a buffer must have at least; 0 for textures.
+    /// Bytes that a buffer must have at least; 0 for what is no buffer.
     pub min_bytes: u64,
 }
 
@@ -31,8 +35,9 @@ impl ShaderSlot {
     }
 }
 
-/// What a slot takes; whether a buffer is written comes from the WGSL.
+/// What a slot takes; whether a resource is written comes from the WGSL.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SlotKind {
     /// `var<uniform>`
     Uniform,
@@ -42,8 +47,33 @@ pub enum SlotKind {
     ReadWrite,
     /// `texture_2d<f32>`, loaded, not filtered
     Texture,
-    /// `texture_depth_2d`
+    /// `texture_2d<f32>`, read through a sampler
+    FilteredTexture,
+    /// `texture_2d<u32>`
+    UintTexture,
+    /// `texture_depth_2d`, loaded
     DepthTexture,
+    /// `texture_storage_2d<FORMAT, write>`
+    StorageTexture(Format),
+    /// `sampler`
+    Sampler,
+}
+
+impl SlotKind {
+    /// Whether a buffer is bound.
+    pub fn is_buffer(self) -> bool {
+        matches!(self, Self::Uniform | Self::Read | Self::ReadWrite)
+    }
+
+    /// Whether a texture is bound.
+    pub fn is_texture(self) -> bool {
+        !self.is_buffer() && self != Self::Sampler
+    }
+
+    /// Whether the shader writes it.
+    pub fn is_written(self) -> bool {
+        matches!(self, Self::ReadWrite | Self::StorageTexture(_))
+    }
 }
 
 impl fmt::Display for SlotKind {
@@ -53,7 +83,11 @@ impl fmt::Display for SlotKind {
             Self::Read => "read",
             Self::ReadWrite => "read_write",
             Self::Texture => "texture",
+            Self::FilteredTexture => "filtered_texture",
+            Self::UintTexture => "uint_texture",
             Self::DepthTexture => "depth_texture",
+            Self::StorageTexture(_) => "storage_texture",
+            Self::Sampler => "sampler",
         })
     }
 }
@@ -71,7 +105,7 @@ impl Stages {
     pub const FRAGMENT: Self = Self(4);
 
     /// Whether any of `other` is among them.
-    pub fn has(self, other: Self) -> bool {
+    pub fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 
@@ -111,10 +145,13 @@ pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::Mod
         if binding.group != 0 {
             return Err(refuse("only @group(0) is used"));
         }
-        let kind = kind(module, variable).ok_or_else(|| refuse("neither a buffer nor a 2D texture"))?;
-        let min_bytes = match kind {
-            SlotKind::Texture | SlotKind::DepthTexture => 0,
-            _ => u64::from(module.types[variable.ty].inner.size(module.to_ctx())),
+        let kind = kind(module, info, handle).ok_or_else(|| refuse("no kind of binding that the contract has"))?;
+        if kind == SlotKind::DepthTexture && is_sampled(module, info, handle) {
+            return Err(refuse("depth is loaded, not sampled"));
+        }
+        let min_bytes = match kind.is_buffer() {
+            true => u64::from(module.types[variable.ty].inner.size(module.to_ctx())),
+            false => 0,
         };
         let type_name = module.to_ctx().type_to_string(variable.ty);
         slots.push(ShaderSlot { name: name.clone(), binding: binding.binding, kind, type_name, stages, min_bytes });
@@ -127,17 +164,79 @@ pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::Mod
     Ok(slots)
 }
 
-fn kind(module: &naga::Module, variable: &GlobalVariable) -> Option<SlotKind> {
-    match (variable.space, &module.types[variable.ty].inner) {
-        (AddressSpace::Uniform, _) => Some(SlotKind::Uniform),
-        (AddressSpace::Storage { access }, _) if access.contains(StorageAccess::STORE) => Some(SlotKind::ReadWrite),
-        (AddressSpace::Storage { .. }, _) => Some(SlotKind::Read),
-        (AddressSpace::Handle, TypeInner::Image { class: ImageClass::Sampled { multi: false, .. }, .. }) => {
-            Some(SlotKind::Texture)
+fn kind(module: &naga::Module, info: &naga::valid::ModuleInfo, handle: Handle<GlobalVariable>) -> Option<SlotKind> {
+    let variable = &module.global_variables[handle];
+    let TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: false, class } = module.types[variable.ty].inner
+    else {
+        return match (variable.space, &module.types[variable.ty].inner) {
+            (AddressSpace::Uniform, _) => Some(SlotKind::Uniform),
+            (AddressSpace::Storage { access }, _) if access.contains(StorageAccess::STORE) => Some(SlotKind::ReadWrite),
+            (AddressSpace::Storage { .. }, _) => Some(SlotKind::Read),
+            (AddressSpace::Handle, TypeInner::Sampler { comparison: false }) => Some(SlotKind::Sampler),
+            _ => None,
+        };
+    };
+    match class {
+        ImageClass::Sampled { multi: false, kind: ScalarKind::Float } => {
+            Some(if is_sampled(module, info, handle) { SlotKind::FilteredTexture } else { SlotKind::Texture })
         }
-        (AddressSpace::Handle, TypeInner::Image { class: ImageClass::Depth { multi: false }, .. }) => {
-            Some(SlotKind::DepthTexture)
+        ImageClass::Sampled { multi: false, kind: ScalarKind::Uint } => Some(SlotKind::UintTexture),
+        ImageClass::Depth { multi: false } => Some(SlotKind::DepthTexture),
+        ImageClass::Storage { format, access } if access == StorageAccess::STORE => {
+            storage_format(format).map(SlotKind::StorageTexture)
         }
         _ => None,
     }
+}
+
+fn storage_format(format: StorageFormat) -> Option<Format> {
+    match format {
+        StorageFormat::Rgba8Unorm => Some(Format::Rgba8),
+        StorageFormat::Rgba16Float => Some(Format::Rgba16F),
+        StorageFormat::R32Float => Some(Format::R32F),
+        StorageFormat::R32Uint => Some(Format::R32Uint),
+        _ => None,
+    }
+}
+
+/// Whether any entry point reads a texture through a sampler.
+fn is_sampled(module: &naga::Module, info: &naga::valid::ModuleInfo, texture: Handle<GlobalVariable>) -> bool {
+    let mut pairs = (0..module.entry_points.len()).flat_map(|index| &info.get_entry_point(index).sampling_set);
+    pairs.any(|pair| pair.image == texture)
+}
+
+/// What a stage hands on at a location: the type in the WGSL.
+pub(super) type Varying = (u32, String);
+
+/// What an entry point is given at locations.
+pub(super) fn inputs(module: &naga::Module, entry: &naga::EntryPoint) -> Vec<Varying> {
+    let arguments = &entry.function.arguments;
+    arguments.iter().flat_map(|argument| varyings(module, argument.ty, argument.binding.as_ref())).collect()
+}
+
+/// What an entry point gives at locations.
+pub(super) fn outputs(module: &naga::Module, entry: &naga::EntryPoint) -> Vec<Varying> {
+    let result = entry.function.result.iter();
+    result.flat_map(|result| varyings(module, result.ty, result.binding.as_ref())).collect()
+}
+
+fn varyings(module: &naga::Module, ty: Handle<naga::Type>, binding: Option<&Binding>) -> Vec<Varying> {
+    match (binding, &module.types[ty].inner) {
+        (Some(Binding::Location { location, .. }), _) => vec![(*location, module.to_ctx().type_to_string(ty))],
+        (Some(_), _) => Vec::new(),
+        (None, TypeInner::Struct { members, .. }) => {
+            members.iter().flat_map(|member| varyings(module, member.ty, member.binding.as_ref())).collect()
+        }
+        (None, _) => Vec::new(),
+    }
+}
+
+/// Bytes that a group of a compute entry point shares.
+pub(super) fn group_memory(module: &naga::Module, info: &naga::valid::ModuleInfo, entry: usize) -> u32 {
+    let used = info.get_entry_point(entry);
+    let shared = module
+        .global_variables
+        .iter()
+        .filter(|(handle, variable)| variable.space == AddressSpace::WorkGroup && !used[*handle].is_empty());
+    shared.map(|(_, variable)| module.types[variable.ty].inner.size(module.to_ctx())).sum()
 }
