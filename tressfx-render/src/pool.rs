@@ -1,6 +1,6 @@
 //! Memory of the A-buffer: lists of fragments, and what becomes of them.
 
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
+use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::{Label, Result};
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
@@ -44,7 +44,7 @@ impl Counters {
 }
 
 fn storage(backend: &mut dyn Backend, label: Label, bytes: u64) -> Result<BufferId> {
-    backend.create_buffer(&BufferDesc { label, bytes, usage: BufferUse::Storage })
+    backend.create_buffer(&BufferDesc::storage(label, bytes))
 }
 
 /// Lists of fragments, one a pixel.

@@ -1,9 +1,10 @@
 //! The passes of hair in a frame.
 
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse, Format, Kernel, Need};
-use tressfx_core::error::Result;
+use tressfx_core::backend::{Backend, BufferDesc, Format};
+use tressfx_core::error::{Need, Result};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::shader::{Kernel, RasterPipeline};
 use tressfx_core::view::View;
 
 use crate::lights::Lights;
@@ -56,7 +57,7 @@ pub struct HairRenderer {
     shade: Kernel,
     fill: Kernel,
     resolve: Kernel,
-    composite: Kernel,
+    composite: RasterPipeline,
     /// [`gpu::Frame`].
     frame: BufferId,
     pool: NodePool,
@@ -80,11 +81,7 @@ impl HairRenderer {
             fill: fill::kernel(backend)?,
             resolve: resolve::kernel(backend, desc.k)?,
             composite: composite::kernel(backend, desc.target)?,
-            frame: backend.create_buffer(&BufferDesc {
-                label: "hair.render.frame",
-                bytes: size_of::<gpu::Frame>() as u64,
-                usage: BufferUse::Uniform,
-            })?,
+            frame: backend.create_buffer(&BufferDesc::uniform("hair.render.frame", size_of::<gpu::Frame>() as u64))?,
             pool: NodePool::new(backend, desc.size, desc.max_node_bytes)?,
             resolved: Resolved::new(backend, desc.size)?,
         })
@@ -166,9 +163,10 @@ impl HairRenderer {
 
     /// Frees everything that it made.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        for kernel in [self.shade, self.fill, self.resolve, self.composite] {
+        for kernel in [self.shade, self.fill, self.resolve] {
             backend.destroy_pipeline(kernel.pipeline);
         }
+        backend.destroy_pipeline(self.composite.pipeline);
         backend.destroy(self.frame.into());
         self.pool.destroy(backend);
         self.resolved.destroy(backend);
@@ -196,9 +194,10 @@ mod tests {
     fn structs_are_laid_out_as_in_the_wgsl() {
         let mut backend = NullBackend::default();
         let renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
-        for kernel in [&renderer.shade, &renderer.fill, &renderer.resolve, &renderer.composite] {
+        for kernel in [&renderer.shade, &renderer.fill, &renderer.resolve] {
             kernel.shader.check_layout::<gpu::Frame>().unwrap();
         }
+        renderer.composite.shader.check_layout::<gpu::Frame>().unwrap();
         renderer.shade.shader.check_layout::<gpu::Light>().unwrap();
         for kernel in [&renderer.shade, &renderer.fill] {
             kernel.shader.check_layout::<gpu::Section>().unwrap();
@@ -215,8 +214,8 @@ mod tests {
             let desc = RenderDesc { k, ..RenderDesc::new([64, 64], Format::Rgba8Srgb) };
             let renderer = HairRenderer::new(&mut backend, &desc).unwrap();
             assert_eq!(renderer.resolve.shader.features, format!("K={k}"));
-            let counts = [&renderer.shade, &renderer.fill, &renderer.resolve, &renderer.composite]
-                .map(|kernel| kernel.shader.storage_buffers());
+            let shaders = [&renderer.shade, &renderer.fill, &renderer.resolve].map(|kernel| &kernel.shader);
+            let counts = shaders.map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
     }

@@ -2,11 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use tressfx_core::backend::{Backend, ComputeDesc, Kernel};
+use tressfx_core::backend::{Backend, ComputeDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::Specialization;
+use tressfx_core::shader::{Kernel, Specialization};
 
 use crate::pool::{NodePool, Resolved};
 use crate::shaders::shader;
@@ -20,17 +20,19 @@ pub const TILE: u32 = 8;
 pub(crate) fn kernel(backend: &mut dyn Backend, k: u32) -> Result<Kernel> {
     let root = ("resolve", include_str!("../shaders/resolve.wgsl"));
     let shader = shader("hair.render.resolve", root, &Specialization::new().constant("K", k))?;
-    backend.create_compute(&ComputeDesc { shader })
+    backend.create_compute(&ComputeDesc::new(shader))
 }
 
 pub(crate) fn pass(list: &mut PassList, kernel: &Kernel, frame: BufferId, pool: &NodePool, resolved: &Resolved) {
-    let bindings = kernel.bind(&[
-        ("frame", frame.into()),
-        ("heads", pool.heads.into()),
-        ("nodes", pool.nodes.into()),
-        ("counters", pool.counters.into()),
-        ("resolved", resolved.colors.into()),
-        ("tiles", resolved.tiles.into()),
-    ]);
+    let bindings = kernel
+        .bind(&[
+            ("frame", frame.into()),
+            ("heads", pool.heads.into()),
+            ("nodes", pool.nodes.into()),
+            ("counters", pool.counters.into()),
+            ("resolved", resolved.colors.into()),
+            ("tiles", resolved.tiles.into()),
+        ])
+        .expect("the names of the kernel");
     list.compute(kernel, &bindings, Grid::for_image(resolved.size, TILE));
 }

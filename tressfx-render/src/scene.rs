@@ -1,12 +1,13 @@
 //! `hair.render.scene`: opaque meshes and the backdrop.
 
 use glam::Vec3;
-use tressfx_core::backend::{Backend, Blend, BufferDesc, BufferUse, Depth, DepthOrder, Format, Kernel};
+use tressfx_core::backend::{Backend, Blend, BufferDesc, Depth, DepthOrder, Format};
 use tressfx_core::error::Result;
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
+use tressfx_core::shader::RasterPipeline;
 use tressfx_core::view::{Pose, View};
 
 use crate::lights::Lights;
@@ -109,8 +110,8 @@ pub struct MeshDraw<'a> {
 #[derive(Debug)]
 pub struct ScenePass {
     order: DepthOrder,
-    mesh: Kernel,
-    backdrop: Kernel,
+    mesh: RasterPipeline,
+    backdrop: RasterPipeline,
     frame: BufferId,
     gradient: BufferId,
 }
@@ -152,18 +153,12 @@ impl ScenePass {
         for draw in meshes {
             list.upload(draw.mesh.uniform, 0, &[draw.uniform()]);
         }
-        let behind = Draw {
-            kernel: self.backdrop.clone(),
-            bindings: self.backdrop.bind(&[("gradient", self.gradient.into())]),
-            vertices: 3,
-            instances: 1,
-        };
-        list.raster(RasterPass {
-            label: LABEL,
-            colors: vec![(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))],
-            depth: Some((targets.depth, Load::Clear(self.order.far()))),
-            draws: meshes.iter().map(|draw| self.mesh(draw.mesh)).chain([behind]).collect(),
-        });
+        let gradient = self.backdrop.bind(&[("gradient", self.gradient.into())]).expect("the names of the shader");
+        let mut pass = RasterPass::new(LABEL)
+            .color(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))
+            .depth(targets.depth, Load::Clear(self.order.far()));
+        pass.draws.extend(meshes.iter().map(|draw| self.mesh(draw.mesh)));
+        list.raster(pass.draw(Draw::new(&self.backdrop, &gradient, 3, 1)));
     }
 
     fn mesh(&self, mesh: &SceneMesh) -> Draw {
@@ -173,7 +168,7 @@ impl ScenePass {
             ("vertices", mesh.vertices.into()),
             ("indices", mesh.indices.into()),
         ]);
-        Draw { kernel: self.mesh.clone(), bindings, vertices: mesh.index_count, instances: 1 }
+        Draw::new(&self.mesh, &bindings.expect("the names of the shader"), mesh.index_count, 1)
     }
 
     /// Frees what it made.
@@ -192,9 +187,7 @@ impl SceneMesh {
         let pairs = mesh.positions.iter().zip(&mesh.normals);
         let vertices: Vec<[f32; 4]> =
             pairs.flat_map(|(p, n)| [p.extend(1.0).to_array(), n.extend(0.0).to_array()]).collect();
-        let mut buffer = |label, bytes: usize| {
-            backend.create_buffer(&BufferDesc { label, bytes: bytes.max(32) as u64, usage: BufferUse::Storage })
-        };
+        let mut buffer = |label, bytes: usize| backend.create_buffer(&BufferDesc::storage(label, bytes.max(32) as u64));
         let made = Self {
             vertices: buffer("hair.render.scene.vertices", size_of_val(&vertices[..]))?,
             indices: buffer("hair.render.scene.indices", size_of_val(&mesh.indices[..]))?,
@@ -236,7 +229,7 @@ impl Backdrop {
 }
 
 fn uniform_buffer<T>(backend: &mut dyn Backend, label: &'static str) -> Result<BufferId> {
-    backend.create_buffer(&BufferDesc { label, bytes: size_of::<T>() as u64, usage: BufferUse::Uniform })
+    backend.create_buffer(&BufferDesc::uniform(label, size_of::<T>() as u64))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A section of a groom on the GPU.
 
 use glam::Vec3;
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
+use tressfx_core::backend::{Backend, BufferDesc, BufferUses};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
@@ -107,7 +107,7 @@ impl Section {
         assert_eq!(info.openness.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
         let mut made = Vec::new();
         let mut create = |label, bytes, usage| -> Result<BufferId> {
-            let buffer = backend.create_buffer(&BufferDesc { label, bytes, usage });
+            let buffer = backend.create_buffer(&BufferDesc::new(label, bytes, usage | BufferUses::COPIES));
             // What was made before goes with what could not be made.
             if buffer.is_err() {
                 made.iter().for_each(|&buffer: &BufferId| backend.destroy(buffer.into()));
@@ -115,11 +115,11 @@ impl Section {
             made.extend(buffer.as_ref().ok());
             buffer
         };
-        let uniform = create("hair.render.section", size_of::<gpu::Section>() as u64, BufferUse::Uniform)?;
+        let uniform = create("hair.render.section", size_of::<gpu::Section>() as u64, BufferUses::UNIFORM)?;
         let open_bytes = (16 * u64::from(shape.guide_vertices())).max(16);
-        let openness = create("hair.render.openness", open_bytes, BufferUse::Storage)?;
+        let openness = create("hair.render.openness", open_bytes, BufferUses::STORAGE)?;
         let color_bytes = (8 * u64::from(shape.strand_vertices())).max(16);
-        let colors = create("hair.render.colors", color_bytes, BufferUse::Storage)?;
+        let colors = create("hair.render.colors", color_bytes, BufferUses::STORAGE)?;
         list.upload(openness, 0, &info.openness);
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         Ok(Self { buffers, info, uniform, openness, colors })

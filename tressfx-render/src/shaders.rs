@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use tressfx_core::backend::{Backend, Blend, ComputeDesc, Depth, Format, Kernel, RasterDesc};
+use tressfx_core::backend::{Backend, Blend, ComputeDesc, Depth, Format, RasterDesc};
 use tressfx_core::error::{Label, Result};
-use tressfx_core::shader::{Module, Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Kernel, Module, RasterPipeline, Shader, ShaderSource, Specialization};
 
 /// Threads of a group of a kernel that walks a row of things: `package::grid::GROUP`.
 pub(crate) const GROUP: u32 = 64;
@@ -26,7 +26,7 @@ pub(crate) fn shader(label: Label, root: Module, specialization: &Specialization
 
 /// Compiles a compute kernel that is not specialised.
 pub(crate) fn compute(backend: &mut dyn Backend, label: Label, root: Module) -> Result<Kernel> {
-    backend.create_compute(&ComputeDesc { shader: shader(label, root, &Specialization::new())? })
+    backend.create_compute(&ComputeDesc::new(shader(label, root, &Specialization::new())?))
 }
 
 /// Compiles a raster kernel that is not specialised.
@@ -36,7 +36,7 @@ pub(crate) fn raster(
     root: Module,
     target: (Format, Blend),
     depth: Depth,
-) -> Result<Kernel> {
+) -> Result<RasterPipeline> {
     let shader = shader(label, root, &Specialization::new())?;
-    backend.create_raster(&RasterDesc { shader, targets: vec![target], depth })
+    backend.create_raster(&RasterDesc::new(shader).target(target.0, target.1).depth(depth))
 }

@@ -3,7 +3,7 @@
 use bytemuck::NoUninit;
 use glam::Vec3;
 use tressfx_core::Result;
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
+use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Label;
 use tressfx_core::id::BufferId;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
@@ -45,11 +45,7 @@ impl SectionBuffers {
                 0 => None,
                 _ => Some(storage(backend, "hair.follow_offsets", 16, follows)?),
             },
-            step: backend.create_buffer(&BufferDesc {
-                label: "hair.step",
-                bytes: size_of::<Step>() as u64,
-                usage: BufferUse::Uniform,
-            })?,
+            step: backend.create_buffer(&BufferDesc::uniform("hair.step", size_of::<Step>() as u64))?,
             pinned_tips: strands.rest.chunks(vertices).any(|strand| strand[vertices - 1].w == 0.0),
         })
     }
@@ -90,5 +86,5 @@ impl Upload {
 /// A storage buffer for `count` elements, filled with zeros.
 pub(crate) fn storage(backend: &mut dyn Backend, label: Label, bytes_each: u64, count: u32) -> Result<BufferId> {
     let bytes = (bytes_each * u64::from(count)).max(16);
-    backend.create_buffer(&BufferDesc { label, bytes, usage: BufferUse::Storage })
+    backend.create_buffer(&BufferDesc::storage(label, bytes))
 }

@@ -11,10 +11,9 @@ pub(crate) mod velocity_shock;
 use std::sync::Arc;
 
 use tressfx_core::Result;
-use tressfx_core::backend::{Backend, ComputeDesc, Kernel};
-use tressfx_core::id::Resource;
+use tressfx_core::backend::{Backend, ComputeDesc};
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Bindings, Module, Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, Bindings, Kernel, Module, Shader, ShaderSource, Specialization};
 use tressfx_core::strand_buffers::StrandShape;
 
 /// Threads of a group; `package::grid::GROUP` in WGSL.
@@ -41,12 +40,12 @@ impl Pass {
         backend: &mut dyn Backend,
         source: &ShaderSource,
         specialization: &Specialization,
-        resources: &[(&str, Resource)],
+        bindings: &[(&str, Binding)],
         threads: u32,
     ) -> Result<Self> {
         let shader = Arc::new(Shader::new(source, specialization)?);
-        let kernel = backend.create_compute(&ComputeDesc { shader })?;
-        let bindings = kernel.bind(resources);
+        let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
+        let bindings = kernel.bind(bindings)?;
         Ok(Self { kernel, bindings, grid: Grid::for_threads(threads, GROUP) })
     }
 
