@@ -3,9 +3,9 @@
 //! `cargo run --release -p tressfx-examples --example hello_hair -- [OUT.png [GROOM]]`
 
 use anyhow::{Context, Result};
+use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};

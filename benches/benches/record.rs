@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_vulkan::ash::vk;
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
 use tressfx_core::backend::{Backend, Format, Record, TextureDesc};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};

@@ -8,10 +8,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use glam::{DVec4, Vec3};
+use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::{Backend, Format, TextureDesc};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -78,7 +78,7 @@ fn asset(name: &str) -> Result<HairAsset, Failure> {
     }
     match name.strip_prefix("sphere:") {
         Some(strands) => Ok(sphere(strands.parse()?)),
-        None => Ok(tressfx_core::asset::read(name)?),
+        None => Ok(tressfx_asset::read(name)?),
     }
 }
 

@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use glam::{Quat, Vec3, Vec4};
+use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::HairAsset;
 use tressfx_core::backend::Backend;
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
@@ -77,7 +77,7 @@ fn bench(backend: &mut WgpuBackend, groom: &str, frames: u32) -> Result<(), Fail
 fn asset(name: &str) -> Result<HairAsset, Failure> {
     match name.strip_prefix("builtin:") {
         Some(builtin) => Ok(builtin.parse::<Builtin>()?.asset()),
-        None => Ok(tressfx_core::asset::read(name)?),
+        None => Ok(tressfx_asset::read(name)?),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the engines are told on the command line.
 
 use anyhow::{Context, Result, bail};
-use tressfx_core::builtin::Builtin;
+use tressfx_asset::builtin::Builtin;
 
 /// `[--validate] [OUT.png [GROOM [FRAMES [WIDTHxHEIGHT]]]]`
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use glam::{Quat, Vec3};
+use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::{Backend, Format};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
-use tressfx_core::builtin::Builtin;
+use tressfx_asset::builtin::Builtin;
 use tressfx_core::strands::Bounds;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{LightPlace, Lights};

@@ -17,9 +17,9 @@ mod sets;
 use engine::Engine;
 use gpu::Gpu;
 use inside::{import, share};
+use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_core::backend::{Backend, Format, Record};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::view::Pose;
 use tressfx_examples::{Hair, Stage, head};
 

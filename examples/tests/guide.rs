@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
+use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shader::{Shader, SlotKind};

@@ -1,9 +1,9 @@
 //! Small grooms, a small screen, and pictures that can be held against their f64 references.
 
 use glam::{DVec4, Vec3};
+use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
 use tressfx_core::id::TextureId;
-use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Pose, View};

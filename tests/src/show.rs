@@ -2,9 +2,9 @@
 //! frames.
 
 use glam::Vec3;
+use tressfx_asset::builtin::Builtin;
+use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
-use tressfx_core::builtin::Builtin;
-use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};

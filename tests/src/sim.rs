@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Quat, Vec3, Vec4};
-use tressfx_core::asset::{self, AssetFormat, HairAsset};
+use tressfx_asset::builtin::Builtin;
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::Backend;
-use tressfx_core::builtin::Builtin;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands, about};
@@ -245,7 +245,7 @@ pub fn real(path: &str) -> Option<Strands> {
         eprintln!("skipped: TRESSFX_ASSETS is not set, {path} is not read");
         return None;
     };
-    Some(strands_of(asset::read(folder.join(path)).expect("the groom reads"), 0))
+    Some(strands_of(tressfx_asset::read(folder.join(path)).expect("the groom reads"), 0))
 }
 
 /// Roundings of a coordinate that do not count as an error.

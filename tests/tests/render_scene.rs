@@ -3,9 +3,9 @@
 mod support;
 
 use glam::{DVec4, Vec3};
+use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
-use tressfx_core::mesh::Mesh;
 use tressfx_render::{Material, Surface, reference};
 
 use support::stage;

@@ -2,8 +2,8 @@
 
 mod support;
 
+use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
-use tressfx_core::builtin::Builtin;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Strands, about};
 use tressfx_sim::{ClockParams, SectionDesc, SimParams, metrics, reference};

@@ -1,32 +1,20 @@
 //! Hair assets: what a groom file holds, before it is prepared for the GPU.
 //!
-//! [`read`] tells the format by the content of a file, never by its name, and gives one [`HairAsset`], whatever the format.
-//! Nothing that a known format stores is lost on the way in. [`crate::strands::Strands`] is made from an asset.
+//! This is the data alone, whatever it comes from; the crate `tressfx-asset` reads and writes files and grows built-in
+//! grooms. [`crate::strands::Strands`] is made from an asset.
 
-mod bytes;
 mod check;
 mod error;
 mod inverse_mass;
-mod lines;
-mod report;
-mod write;
-
-pub mod hair;
-pub mod obj_lines;
-pub mod text;
-pub mod tressfx3;
-pub mod tressfx4;
+mod placement;
 
 use std::fmt;
-use std::path::Path;
 
-use glam::{DAffine3, DMat3, DVec3};
 use serde::Serialize;
 
-pub use error::{AssetError, AssetErrorKind};
-pub(crate) use report::segment_length;
-pub use report::{LengthStats, Oddities, Report};
-pub use write::{WriteFormat, write};
+pub use check::Domain;
+pub use error::{AssetError, AssetProblem};
+pub use placement::Placement;
 
 /// The most vertices that a strand of a binary TressFX file, or a strand made for the GPU, may have.
 pub const MAX_VERTICES: u32 = 256;
@@ -46,8 +34,8 @@ pub enum AssetFormat {
     /// `.hair`, the exchange format of Cem Yuksel's hair models.
     Hair,
     /// Wavefront `.obj` whose line elements are the strands.
-    ObjLines,
-    /// Made by [`crate::builtin`].
+    Obj,
+    /// Made by a program, not read from a file.
     Builtin,
 }
 
@@ -58,49 +46,9 @@ impl fmt::Display for AssetFormat {
             Self::TressFx3 => "TressFX 3 binary",
             Self::TressFx4 => "TressFX 4 binary",
             Self::Hair => "HAIR",
-            Self::ObjLines => "Wavefront OBJ lines",
+            Self::Obj => "Wavefront OBJ",
             Self::Builtin => "built-in",
         })
-    }
-}
-
-/// The placement that the header of a text 2.0 file asks for: scaled first, then turned, then moved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// Uniform factor.
-    pub scale: f32,
-    /// Degrees about x, then about y, then about z.
-    pub rotation: [f32; 3],
-    /// In the unit of the scaled points.
-    pub translation: [f32; 3],
-}
-
-impl Default for Placement {
-    fn default() -> Self {
-        Self { scale: 1.0, rotation: [0.0; 3], translation: [0.0; 3] }
-    }
-}
-
-impl Placement {
-    /// True where [`Placement::apply`] would change no point.
-    pub fn is_identity(&self) -> bool {
-        *self == Self::default()
-    }
-
-    fn affine(&self) -> DAffine3 {
-        let [x, y, z] = self.rotation.map(|degrees| f64::from(degrees).to_radians());
-        let rotation = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
-        let translation = DVec3::from_array(self.translation.map(f64::from));
-        DAffine3::from_mat3_translation(rotation * f64::from(self.scale), translation)
-    }
-
-    /// The placed points. Computed in f64, so that a large translation costs no precision before the last rounding.
-    pub fn apply(&self, points: &[[f32; 3]]) -> Vec<[f32; 3]> {
-        let affine = self.affine();
-        points
-            .iter()
-            .map(|p| affine.transform_point3(DVec3::from_array(p.map(f64::from))).as_vec3().to_array())
-            .collect()
     }
 }
 
@@ -223,54 +171,6 @@ impl HairAsset {
         match self.placement {
             Some(placement) if !placement.is_identity() => placement.apply(&self.points).into(),
             _ => self.points.as_slice().into(),
-        }
-    }
-}
-
-/// Reads a groom file of any format that [`read_bytes`] knows.
-///
-/// # Errors
-/// As [`read_bytes`], or where the file cannot be read.
-pub fn read(path: impl AsRef<Path>) -> Result<HairAsset, AssetError> {
-    let path = path.as_ref();
-    let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| AssetError::new(&name, "file", AssetErrorKind::Io(error)))?;
-    read_bytes(&name, &bytes)
-}
-
-/// Reads a groom from memory; `name` is what messages call it. The content alone tells the format.
-///
-/// # Errors
-/// Where the format is unknown, or the content contradicts itself, is cut off, or holds a value that is not finite.
-/// The error names the file, the place in it and the field.
-pub fn read_bytes(name: &str, bytes: &[u8]) -> Result<HairAsset, AssetError> {
-    match detect(bytes) {
-        Some(AssetFormat::Hair) => hair::read(name, bytes),
-        Some(AssetFormat::TressFx3) => tressfx3::read(name, bytes),
-        Some(AssetFormat::TressFx4) => tressfx4::read(name, bytes),
-        Some(AssetFormat::Text) => text::read(name, bytes),
-        Some(AssetFormat::ObjLines) => obj_lines::read(name, bytes),
-        Some(AssetFormat::Builtin) | None => Err(AssetError::new(name, "format", AssetErrorKind::UnknownFormat).at(0)),
-    }
-}
-
-/// Tells the format of a file by its first bytes: the magic of `.hair`, the float version of the binary `.tfx` files, or
-/// the first word of a text.
-fn detect(bytes: &[u8]) -> Option<AssetFormat> {
-    let magic: [u8; 4] = bytes.first_chunk().copied()?;
-    let version = f32::from_le_bytes(magic);
-    if magic == hair::MAGIC {
-        Some(AssetFormat::Hair)
-    } else if tressfx3::VERSIONS.contains(&version) {
-        Some(AssetFormat::TressFx3)
-    } else if tressfx4::VERSIONS.contains(&version) {
-        Some(AssetFormat::TressFx4)
-    } else {
-        let word = lines::first_word(bytes)?;
-        if text::is_first_word(word) {
-            Some(AssetFormat::Text)
-        } else {
-            obj_lines::is_first_word(word).then_some(AssetFormat::ObjLines)
         }
     }
 }

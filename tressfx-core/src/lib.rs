@@ -1,4 +1,4 @@
-//! Hair assets, strands, views, and the contract with a graphics API.
+//! Strands, views, and the contract with a graphics API.
 //!
 //! This crate names no graphics API, makes no device, never submits and never waits. It knows strands, not how they move
 //! ([`tressfx-sim`](https://docs.rs/tressfx-sim)) or look ([`tressfx-render`](https://docs.rs/tressfx-render)).
@@ -7,14 +7,12 @@
 
 pub mod asset;
 pub mod backend;
-pub mod builtin;
 pub mod check;
 mod epoch;
 pub mod error;
 mod format;
 pub mod hazards;
 pub mod id;
-pub mod mesh;
 pub mod null;
 pub mod pass;
 pub mod shader;

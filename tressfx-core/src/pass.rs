@@ -371,6 +371,30 @@ impl PassList {
         self.commands.push(command);
     }
 
+    /// Adds the commands of another list after its own.
+    pub fn append(&mut self, other: &Self) {
+        let start = self.bytes.len();
+        self.bytes.extend_from_slice(&other.bytes);
+        for command in &other.commands {
+            let mut command = command.clone();
+            if let Command::Upload { data, .. } = &mut command {
+                *data = data.start.saturating_add(start)..data.end.saturating_add(start);
+            }
+            self.push(command);
+        }
+        // What either may name, both together may.
+        let older = other.epoch.as_ref().filter(|other| other.number() < self.epoch());
+        if let Some(older) = older {
+            self.epoch = Some(older.clone());
+        }
+    }
+
+    /// The same list with other commands, for tools that leave some out or add to them. They name the bytes of this list.
+    #[must_use]
+    pub fn with_commands(&self, commands: Vec<Command>) -> Self {
+        Self { commands, ..self.clone() }
+    }
+
     /// Writes `data` to `dst` from byte `offset` on. Its size must be a multiple of 4.
     pub fn upload<T: NoUninit>(&mut self, dst: BufferId, offset: u64, data: &[T]) {
         let start = self.bytes.len();

@@ -113,14 +113,15 @@ impl StrandBuffers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::builtin::Builtin;
+    use crate::asset::{AssetFormat, HairAsset};
     use crate::strands::StrandOptions;
 
     #[test]
     fn places_in_a_buffer_are_those_of_the_interleaved_strands() {
-        let builtin = Builtin::parse("fur:5:3").expect("a built-in groom");
+        let points = (0..15).map(|i| [(i / 3) as f32, (i % 3) as f32, 0.5]).collect();
+        let asset = HairAsset::new("comb", AssetFormat::Builtin, points, vec![3; 5]);
         let options = StrandOptions { follows: Some(2), ..StrandOptions::default() };
-        let strands = Strands::new(&builtin.asset(), &options).expect("a sound groom");
+        let strands = Strands::new(&asset, &options).expect("a sound groom");
         let shape = StrandShape::of(&strands);
         let numbered: Vec<u32> = (0..shape.strand_vertices()).collect();
         let interleaved = strands.interleave(&numbered);

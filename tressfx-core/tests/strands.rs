@@ -2,12 +2,21 @@
 
 use glam::{Vec3, Vec4};
 use tressfx_core::asset::{AssetFormat, HairAsset, Placement};
-use tressfx_core::builtin::{Builtin, Style};
 use tressfx_core::strands::{MAX_FOLLOWS, StrandOptions, Strands, StrandsError, metres_per_unit};
 
 fn asset(strands: &[&[[f32; 3]]]) -> HairAsset {
     let counts = strands.iter().map(|strand| strand.len() as u32).collect();
     HairAsset::new("test", AssetFormat::Text, strands.concat(), counts)
+}
+
+/// Bent strands beside each other, each with texture coordinates of its own.
+fn row(strands: u32, vertices: u32) -> HairAsset {
+    let point = |i: u32| [(i / vertices) as f32 * 0.01, (i % vertices) as f32, ((i % vertices) as f32).sin()];
+    let points = (0..strands * vertices).map(point).collect();
+    HairAsset {
+        strand_uvs: Some((0..strands).map(|strand| [strand as f32, 0.5]).collect()),
+        ..HairAsset::new("row", AssetFormat::Builtin, points, vec![vertices; strands as usize])
+    }
 }
 
 fn in_file_order() -> StrandOptions {
@@ -110,21 +119,21 @@ fn follow_strands_fill_a_disc_across_the_root() {
 
 #[test]
 fn the_order_is_a_permutation_and_a_prefix_samples_evenly() {
-    let groom = Builtin { strands: 1000, ..Builtin::from(Style::Fur) }.asset();
+    let groom = row(1000, 4);
     let strands = make(&groom, &StrandOptions::default());
     let mut sorted = strands.order.clone();
     sorted.sort_unstable();
     assert!(sorted.into_iter().eq(0..1000));
     let first_half = strands.order[..200].iter().filter(|&&strand| strand < 500).count();
     assert!((70..130).contains(&first_half), "{first_half}");
-    let uvs = groom.strand_uvs.as_ref().expect("built-in grooms have them");
+    let uvs = groom.strand_uvs.as_ref().expect("set above");
     assert_eq!(strands.strand_uv.as_ref().expect("from the file")[7].to_array(), uvs[strands.order[7] as usize]);
     assert_eq!(strands, make(&groom, &StrandOptions::default()));
 }
 
 #[test]
 fn layouts_are_inverse_to_each_other_and_poses_go_back_in_file_order() {
-    let groom = Builtin { strands: 50, vertices: 6, ..Builtin::from(Style::Long) }.asset();
+    let groom = row(50, 6);
     let strands = make(&groom, &StrandOptions { follows: Some(2), ..StrandOptions::default() });
     let gpu = strands.interleave(&strands.rest);
     assert_eq!(gpu[3 * 50 + 7], strands.rest[7 * 6 + 3]);

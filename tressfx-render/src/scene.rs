@@ -1,11 +1,11 @@
 //! `hair.render.scene`: opaque meshes and the backdrop.
 
 use glam::Vec3;
+use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, Blend, BufferDesc, Depth, DepthOrder, Format};
 use tressfx_core::error::Result;
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
-use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
 use tressfx_core::shader::RasterPipeline;
 use tressfx_core::view::{Pose, View};

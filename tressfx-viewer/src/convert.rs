@@ -1,7 +1,8 @@
 //! `tressfx convert`.
 
 use anyhow::{Result, anyhow};
-use tressfx_core::asset::{self, HairAsset, WriteFormat};
+use tressfx_asset::WriteFormat;
+use tressfx_core::asset::HairAsset;
 use tressfx_core::strands::{StrandOptions, Strands};
 
 use crate::cli::Convert;
@@ -12,14 +13,14 @@ pub(crate) fn run(args: &Convert) -> Result<()> {
     let mut asset = groom::asset(&args.input)?;
     let format = WriteFormat::of_path(&args.output)
         .ok_or_else(|| anyhow!("{}: the ending chooses the format: .tfx or .txt", args.output.display()))?;
-    let dropped = asset.dropped_by(format);
+    let dropped = tressfx_asset::dropped_by(&asset, format);
     if !dropped.is_empty() {
         eprintln!("{}: this format has no place for {}", args.output.display(), dropped.join(", "));
     }
     if format == WriteFormat::TressFx4 && asset.uniform_count().is_none() {
         asset = resampled(&asset)?;
     }
-    Ok(asset::write(&args.output, &asset, Some(format))?)
+    Ok(tressfx_asset::write(&args.output, &asset, Some(format))?)
 }
 
 /// All strands with the vertex count of the longest one, in the order of the file.

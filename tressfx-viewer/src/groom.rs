@@ -2,9 +2,9 @@
 
 use anyhow::{Context, Result};
 use glam::Vec3;
-use tressfx_core::asset::{self, AssetFormat, HairAsset};
-use tressfx_core::builtin::Builtin;
-use tressfx_core::mesh::Mesh;
+use tressfx_asset::builtin::Builtin;
+use tressfx_asset::mesh::Mesh;
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{self, Bounds, StrandOptions, Strands};
 
@@ -19,7 +19,7 @@ const MOST_FOLLOWS: u32 = 64;
 pub(crate) fn asset(name: &str) -> Result<HairAsset> {
     match builtin(name)? {
         Some(builtin) => Ok(builtin.asset()),
-        None => Ok(asset::read(name)?),
+        None => Ok(tressfx_asset::read(name)?),
     }
 }
 

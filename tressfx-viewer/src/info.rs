@@ -1,7 +1,7 @@
 //! `tressfx info`.
 
 use anyhow::Result;
-use tressfx_core::asset::Report;
+use tressfx_asset::Report;
 
 use crate::cli::Info;
 use crate::groom;

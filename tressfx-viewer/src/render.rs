@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use tressfx_core::mesh::Mesh;
+use tressfx_asset::mesh::Mesh;
 
 use crate::cli::Render;
 use crate::passes;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use glam::Vec4;
-use tressfx_core::asset::{self, WriteFormat};
+use tressfx_asset::WriteFormat;
 
 use crate::cli::Simulate;
 use crate::passes;
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let in_world = |position: &Vec4| pose.transform(position.truncate()).extend(position.w);
     for ((strands, positions), file) in run.groom.sections.iter().zip(&positions).zip(&files) {
         let positions: Vec<Vec4> = positions.iter().map(in_world).collect();
-        asset::write(file, &strands.pose_asset(&positions, args.all)?, Some(WriteFormat::TressFx4))?;
+        tressfx_asset::write(file, &strands.pose_asset(&positions, args.all)?, Some(WriteFormat::TressFx4))?;
     }
     run.report(&args.scene, RenderStats::default())
 }

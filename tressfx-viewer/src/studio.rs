@@ -1,8 +1,8 @@
 //! Where pictures are taken: targets, lights, backdrop, the mesh that hair grows on, and the renderer.
 
 use anyhow::Result;
+use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Format, TextureDesc};
-use tressfx_core::mesh::Mesh;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glam::Vec3;
-use tressfx_core::asset;
 
 /// The pose that a groom ends in: its strands.
 fn pose(groom: &str, motion: &str, fps: u32) -> Vec<Vec<Vec3>> {
@@ -15,7 +14,7 @@ fn pose(groom: &str, motion: &str, fps: u32) -> Vec<Vec<Vec3>> {
     command.args(["simulate", groom, "--motion", motion, "--fps", &rate, "--frames", &frames, "--out"]).arg(&out);
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let asset = asset::read(&out).unwrap();
+    let asset = tressfx_asset::read(&out).unwrap();
     let points: Vec<Vec3> = asset.placed_points().iter().copied().map(Vec3::from).collect();
     asset.ranges().map(|range| points[range].to_vec()).collect()
 }

@@ -1,22 +1,22 @@
 //! Whether the arrays of an asset fit each other: an asset made by hand gets the same care as one from a file.
 
-use super::{AssetError, AssetErrorKind, HairAsset};
+use super::{AssetError, AssetProblem, HairAsset};
 
-/// What the entries of an array belong to; finds the strand and the vertex to blame for an entry.
-#[derive(Clone, Copy)]
-pub(crate) enum Owner<'a> {
+/// What an array has an entry for; finds the strand and the vertex of an entry.
+#[derive(Clone, Copy, Debug)]
+pub enum Domain<'a> {
     /// One entry per strand.
     Strand,
     /// One entry per vertex; the vertex counts of the strands.
     Vertex(&'a [u32]),
 }
 
-impl Owner<'_> {
+impl Domain<'_> {
     /// Looks for a value that is not finite among entries of `width` values each. Gives the index of the value as well.
-    pub(crate) fn find_not_finite(self, values: &[f32], width: usize) -> Option<(usize, AssetErrorKind)> {
+    pub fn find_not_finite(self, values: &[f32], width: usize) -> Option<(usize, AssetProblem)> {
         let index = values.iter().position(|value| !value.is_finite())?;
         let (strand, vertex) = self.locate(index / width);
-        Some((index, AssetErrorKind::NotFinite { strand, vertex, value: values[index] }))
+        Some((index, AssetProblem::NotFinite { strand, vertex, value: values[index] }))
     }
 
     fn locate(self, entry: usize) -> (usize, usize) {
@@ -36,8 +36,7 @@ impl HairAsset {
     /// Checks that there is a strand, that no strand is empty, that every array has the length that its kind needs, and
     /// that all values are finite and no inverse mass is negative.
     ///
-    /// Every reader leaves an asset that passes; [`crate::strands::Strands::new`] and the writers check again, because the
-    /// fields are public.
+    /// [`crate::strands::Strands::new`] checks too, because the fields are public.
     ///
     /// # Errors
     /// The first array or value that does not fit.
@@ -51,36 +50,38 @@ impl HairAsset {
             }
         }
         if let Some(index) = &self.guide_index {
-            self.check_length("guide index", Owner::Strand, index.len())?;
+            self.check_length("guide index", Domain::Strand, index.len())?;
         }
         let negative = self.inverse_mass.iter().flatten().find(|&&value| value < 0.0);
-        negative.map_or(Ok(()), |value| Err(self.error("inverse mass", out_of_range(value, "0 or more"))))
+        negative.map_or(Ok(()), |value| Err(self.error("inverse mass", AssetProblem::out_of_range(value, "0 or more"))))
     }
 
     fn check_counts(&self) -> Result<(), AssetError> {
         if self.counts.is_empty() {
-            return Err(self.error("strands", out_of_range("0", "at least 1")));
+            return Err(self.error("strands", AssetProblem::out_of_range("0", "at least 1")));
         }
         if let Some(strand) = self.counts.iter().position(|&count| count == 0) {
-            return Err(self.error(&format!("vertices of strand {strand}"), out_of_range("0", "at least 1")));
+            return Err(
+                self.error(&format!("vertices of strand {strand}"), AssetProblem::out_of_range("0", "at least 1"))
+            );
         }
         let stated: u64 = self.counts.iter().map(|&count| u64::from(count)).sum();
         let found = self.points.len() as u64;
         if stated == found {
             return Ok(());
         }
-        Err(self.error("vertices of all strands", AssetErrorKind::Mismatch { stated, found, of: "points are there" }))
+        Err(self.error("vertices of all strands", AssetProblem::Mismatch { stated, found, of: "points are there" }))
     }
 
     /// All arrays of floats: name, values, values per entry, and what an entry belongs to.
-    fn float_arrays(&self) -> [(&'static str, Option<&[f32]>, usize, Owner<'_>); 9] {
-        let vertex = Owner::Vertex(&self.counts);
+    fn float_arrays(&self) -> [(&'static str, Option<&[f32]>, usize, Domain<'_>); 9] {
+        let vertex = Domain::Vertex(&self.counts);
         [
             ("points", Some(self.points.as_flattened()), 3, vertex),
             ("inverse mass", self.inverse_mass.as_deref(), 1, vertex),
-            ("strand UVs", flat(&self.strand_uvs), 2, Owner::Strand),
-            ("strand w", self.strand_w.as_deref(), 1, Owner::Strand),
-            ("strand thickness", self.strand_thickness.as_deref(), 1, Owner::Strand),
+            ("strand UVs", flat(&self.strand_uvs), 2, Domain::Strand),
+            ("strand w", self.strand_w.as_deref(), 1, Domain::Strand),
+            ("strand thickness", self.strand_thickness.as_deref(), 1, Domain::Strand),
             ("vertex UVs", flat(&self.vertex_uvs), 2, vertex),
             ("vertex thickness", self.vertex_thickness.as_deref(), 1, vertex),
             ("vertex transparency", self.vertex_transparency.as_deref(), 1, vertex),
@@ -88,30 +89,25 @@ impl HairAsset {
         ]
     }
 
-    fn check_length(&self, field: &str, owner: Owner<'_>, found: usize) -> Result<(), AssetError> {
+    fn check_length(&self, field: &str, owner: Domain<'_>, found: usize) -> Result<(), AssetError> {
         let (needed, of) = match owner {
-            Owner::Strand => (self.counts.len(), "strands are there"),
-            Owner::Vertex(_) => (self.points.len(), "points are there"),
+            Domain::Strand => (self.counts.len(), "strands are there"),
+            Domain::Vertex(_) => (self.points.len(), "points are there"),
         };
         if needed == found {
             return Ok(());
         }
-        Err(self.error(field, AssetErrorKind::Mismatch { stated: found as u64, found: needed as u64, of }))
+        Err(self.error(field, AssetProblem::Mismatch { stated: found as u64, found: needed as u64, of }))
     }
 
-    fn error(&self, field: &str, kind: AssetErrorKind) -> AssetError {
-        AssetError::new(&self.name, field, kind)
+    fn error(&self, field: &str, problem: AssetProblem) -> AssetError {
+        AssetError { asset: self.name.clone(), field: field.to_owned(), problem }
     }
 }
 
 /// An optional array of entries as one of floats.
-pub(crate) fn flat<const N: usize>(array: &Option<Vec<[f32; N]>>) -> Option<&[f32]> {
+fn flat<const N: usize>(array: &Option<Vec<[f32; N]>>) -> Option<&[f32]> {
     array.as_ref().map(|array| array.as_flattened())
-}
-
-/// The error for a number that is outside of what is allowed.
-pub(crate) fn out_of_range(value: impl ToString, expected: &'static str) -> AssetErrorKind {
-    AssetErrorKind::OutOfRange { value: value.to_string(), expected }
 }
 
 #[cfg(test)]

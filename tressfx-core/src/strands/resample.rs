@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use crate::asset::segment_length;
-
 /// The vertices of a strand, as positions and inverse masses.
 #[derive(Clone, Copy)]
 pub(super) struct Strand<'a> {
@@ -48,6 +46,11 @@ fn arc_lengths(points: &[[f32; 3]]) -> Vec<f64> {
         arc.iter_mut().enumerate().for_each(|(i, arc)| *arc = i as f64);
     }
     arc
+}
+
+/// The distance of two points, computed in f64.
+fn segment_length(a: [f32; 3], b: [f32; 3]) -> f64 {
+    DVec3::from_array(a.map(f64::from)).distance(DVec3::from_array(b.map(f64::from)))
 }
 
 fn lerp(a: [f32; 3], b: [f32; 3], t: f64) -> [f32; 3] {
