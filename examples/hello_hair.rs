@@ -5,7 +5,7 @@
 use anyhow::{Context, Result};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::backend::{Backend, Format, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
@@ -34,7 +34,7 @@ fn main() -> Result<()> {
     }
 
     // What is needed to draw it.
-    let mut texture = |label, format| gpu.create_texture(&TextureDesc { label, size: SIZE, format });
+    let mut texture = |label, format| gpu.create_texture(&TextureDesc::new(label, SIZE, format));
     let targets = Targets { color: texture("color", FORMAT)?, depth: texture("depth", Format::Depth32F)? };
     let view = View::around(&strands.rest.iter().map(|vertex| vertex.truncate()).collect::<Vec<_>>(), SIZE);
     let (lights, material) = (Lights::default(), Material::default());
@@ -52,7 +52,7 @@ fn main() -> Result<()> {
     let picture = list.read_texture(targets.color);
 
     gpu.run(&list)?;
-    let texels = gpu.read(picture).context("the list has run, so the picture is there")?;
+    let texels = gpu.read(picture).ready().context("the list has run, so the picture is there")?;
     image::save_buffer(&out, &texels, SIZE[0], SIZE[1], image::ColorType::Rgba8)?;
     println!("{out}: {} strands on {}", strands.strand_count(), gpu.caps().adapter);
     Ok(())

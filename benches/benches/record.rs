@@ -7,7 +7,7 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_vulkan::ash::vk;
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
-use tressfx_core::backend::{Backend, Format, Record, TextureDesc};
+use tressfx_core::backend::{Backend, Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
@@ -43,7 +43,7 @@ impl Frames {
         let info = StrandInfo::new(&strands);
         let section = |&buffers| Section::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
         let sections = sim.buffers().iter().map(section).collect();
-        let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size: SIZE, format });
+        let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, SIZE, format));
         let targets = Targets {
             color: texture("color", Format::Rgba16F).expect("a texture"),
             depth: texture("depth", Format::Depth32F).expect("a texture"),
@@ -65,7 +65,7 @@ impl Frames {
     }
 
     /// A frame in a row of frames.
-    fn steady(&mut self, backend: &mut dyn Backend) -> PassList {
+    fn steady(&mut self, backend: &mut dyn Run) -> PassList {
         let mut list = PassList::new();
         for _ in 0..2 {
             self.write(&mut list);

@@ -11,7 +11,7 @@ use glam::{DVec4, Vec3};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::{AssetFormat, HairAsset};
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::backend::{Backend, Format, Run, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -105,7 +105,7 @@ impl Stage {
     fn new(backend: &mut WgpuBackend, strands: &Strands, size: [u32; 2]) -> Result<Self, Failure> {
         let points: Vec<Vec3> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
         let view = View::around(&points, size);
-        let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size, format });
+        let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, size, format));
         let targets = Targets { color: texture("color", Format::Rgba16F)?, depth: texture("depth", Format::Depth32F)? };
         let renderer = HairRenderer::new(backend, &RenderDesc::new(size, Format::Rgba16F))?;
         Ok(Self { view, targets, renderer })
@@ -113,12 +113,8 @@ impl Stage {
 
     fn record(&self, section: &Section) -> PassList {
         let mut list = PassList::new();
-        list.raster(RasterPass {
-            label: "clear",
-            colors: vec![(self.targets.color, Load::Clear([0.0; 4]))],
-            depth: Some((self.targets.depth, Load::Clear(self.view.depth.far()))),
-            draws: Vec::new(),
-        });
+        let clear = RasterPass::new("clear").color(self.targets.color, Load::Clear([0.0; 4]));
+        list.raster(clear.depth(self.targets.depth, Load::Clear(self.view.depth.far())));
         let draw = SectionDraw { section, material: &Material::default(), pose: Pose::IDENTITY };
         self.renderer.draw(&mut list, &self.view, &Lights::default(), &self.targets, &[draw]);
         list
@@ -134,7 +130,7 @@ impl Stage {
             let mut list = self.record(section);
             let ticket = self.renderer.read_counters(&mut list);
             backend.run(&list)?;
-            counters = Counters::from_bytes(&backend.read(ticket).ok_or("no counters")?);
+            counters = Counters::from_bytes(&backend.read(ticket).ready().ok_or("no counters")?);
             self.renderer.observe(backend, &counters)?;
             measured += usize::from(warm);
             for (index, timing) in backend.timings().into_iter().enumerate().filter(|_| warm) {
@@ -152,7 +148,7 @@ impl Stage {
         let mut list = self.record(section);
         let ticket = list.read_texture(self.targets.color);
         backend.run(&list)?;
-        let bytes = backend.read(ticket).ok_or("no picture")?;
+        let bytes = backend.read(ticket).ready().ok_or("no picture")?;
         let channel = |pair: &[u8]| half::f16::from_le_bytes([pair[0], pair[1]]).to_f64();
         let picture = bytes.chunks(8).map(|texel| DVec4::from_array([0, 2, 4, 6].map(|i| channel(&texel[i..]))));
         let far = self.view.depth.far();

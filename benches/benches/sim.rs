@@ -15,7 +15,7 @@ use glam::{Quat, Vec3, Vec4};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::HairAsset;
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::{Backend, Run};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
@@ -144,7 +144,7 @@ impl Run {
         let mut list = PassList::new();
         let tickets = self.sim.read_positions(&mut list);
         backend.run(&list)?;
-        let bytes = backend.read(tickets[0]).ok_or("no positions")?;
+        let bytes = backend.read(tickets[0]).ready().ok_or("no positions")?;
         self.sim.destroy(backend);
         let number = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         let vertex = |bytes: &[u8]| Vec4::from_array([0, 4, 8, 12].map(|start| number(&bytes[start..])));

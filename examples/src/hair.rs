@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use anyhow::Result;
 use glam::{Quat, Vec3};
 use tressfx_asset::builtin::Builtin;
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::{Backend, Format, ReadBack};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
@@ -72,9 +72,15 @@ impl Hair {
     /// What the backend says.
     pub fn observe(&mut self, backend: &mut dyn Backend) -> Result<()> {
         while let Some(&ticket) = self.counters.front() {
-            let Some(bytes) = backend.read(ticket) else { break };
+            let read = backend.read(ticket);
+            if read == ReadBack::Pending {
+                break;
+            }
             self.counters.pop_front();
-            self.renderer.observe(backend, &Counters::from_bytes(&bytes))?;
+            // A frame that was thrown away has counted nothing.
+            if let ReadBack::Ready(bytes) = read {
+                self.renderer.observe(backend, &Counters::from_bytes(&bytes))?;
+            }
         }
         Ok(())
     }

@@ -19,7 +19,7 @@ use gpu::Gpu;
 use inside::{import, share};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::VulkanBackend;
-use tressfx_core::backend::{Backend, Format, Record};
+use tressfx_core::backend::{Backend, Format, Record, Run};
 use tressfx_core::view::Pose;
 use tressfx_examples::{Hair, Stage, head};
 
@@ -92,7 +92,7 @@ fn the_engine_may_keep_quiet_between_frames_and_run_lists_in_between() {
         let mut list = tressfx_core::pass::PassList::new();
         let ticket = hair.read_positions(&mut list);
         gpu.run(&list).unwrap();
-        let positions: Vec<f32> = bytemuck::pod_collect_to_vec(&gpu.read(ticket).unwrap());
+        let positions: Vec<f32> = bytemuck::pod_collect_to_vec(&gpu.read(ticket).ready().unwrap());
         assert!(positions.iter().all(|x| x.is_finite()) && positions.iter().any(|&x| x != 0.0), "frame {number}");
     }
     hair.destroy(&mut gpu);

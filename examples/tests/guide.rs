@@ -123,7 +123,7 @@ fn everything() -> PassList {
     }
     let size = [64, 64];
     let view = View::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size);
-    let mut texture = |format| backend.create_texture(&TextureDesc { label: "target", size, format }).unwrap();
+    let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
     let targets = Targets { color: texture(Format::Rgba16F), depth: texture(Format::Depth32F) };
     let scene = ScenePass::new(&mut backend, Format::Rgba16F, view.depth).unwrap();
     let mesh = SceneMesh::new(&mut backend, &mut list, &groom.mesh()).unwrap();
@@ -143,12 +143,12 @@ fn the_table_of_passes_has_every_pass_with_what_it_binds() {
     for (label, command) in list.passes() {
         let shaders: Vec<&Shader> = match command {
             Command::Compute(pass) => vec![&pass.kernel.shader],
-            Command::Raster(pass) => pass.draws.iter().map(|draw| &*draw.kernel.shader).collect(),
+            Command::Raster(pass) => pass.draws.iter().map(|draw| &*draw.pipeline.shader).collect(),
             _ => unreachable!("only passes have labels"),
         };
         let [reads, writes] = passes.entry(label).or_default();
         for slot in shaders.iter().flat_map(|shader| &shader.slots) {
-            let side = if slot.kind == SlotKind::ReadWrite { &mut *writes } else { &mut *reads };
+            let side = if slot.kind.is_written() { &mut *writes } else { &mut *reads };
             side.insert(slot.name.clone());
         }
     }

@@ -3,12 +3,12 @@
 use anyhow::{Result, bail};
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_backend_wgpu::WgpuBackend;
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::Run;
 
 use crate::cli::{BackendName, Scene};
 
 /// Opens the backend that was asked for.
-pub(crate) fn open(args: &Scene) -> Result<Box<dyn Backend>> {
+pub(crate) fn open(args: &Scene) -> Result<Box<dyn Run>> {
     match args.backend {
         BackendName::Wgpu if args.validate => bail!("--validate works with --backend vulkan"),
         BackendName::Wgpu => Ok(Box::new(WgpuBackend::headless_on(args.adapter.as_deref())?)),

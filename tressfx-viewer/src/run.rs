@@ -4,7 +4,6 @@ use anyhow::{Context, Result};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
-use tressfx_core::backend::Backend;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::Pose;
 use tressfx_sim::metrics::{self, EdgeError};
@@ -25,7 +24,7 @@ const POSES_A_SECOND: f64 = 60.0;
 pub(crate) struct Run {
     pub(crate) groom: Groom,
     pub(crate) params: Params,
-    pub(crate) backend: Box<dyn Backend>,
+    pub(crate) backend: Box<dyn tressfx_core::backend::Run>,
     pub(crate) sim: HairSim,
     pub(crate) times: PassTimes,
     pub(crate) trace: Trace,
@@ -96,7 +95,7 @@ impl Run {
 
     /// What a read-back of the list that was just run brought.
     pub(crate) fn fetch(&mut self, ticket: Ticket) -> Result<Vec<u8>> {
-        self.backend.read(ticket).context("the list has run, but a read-back is missing")
+        self.backend.read(ticket).ready().context("the list has run, but a read-back is missing")
     }
 
     /// Positions of all strands of each section about the centre of the groom, strand-major.

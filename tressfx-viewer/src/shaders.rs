@@ -111,7 +111,8 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let params = Params::read(args.params.as_deref(), 1)?;
     // What a device can hold does not matter where nothing runs.
     let most = u64::MAX;
-    let caps = Caps { max_storage_binding_bytes: most, max_buffer_bytes: most, ..Caps::webgpu_default() };
+    let mut caps = Caps::webgpu_default();
+    (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
     let section = SectionDesc { strands: &groom.sections[0], params: params.sim(0).clone() };
     // How many there are is read from the buffer.
@@ -143,7 +144,7 @@ fn write(args: &cli::Shaders, file: String, Emitted { code, entry_point, extra }
 impl<'a> EntryPoint<'a> {
     fn new(shader: &'a Shader, stage: ShaderStage, flag: Stages, suffix: &'static str) -> Result<Self> {
         let entry = shader.entry_point(stage)?;
-        let slots = shader.slots.iter().filter(|slot| slot.stages.has(flag));
+        let slots = shader.slots.iter().filter(|slot| slot.stages.intersects(flag));
         Ok(Self {
             label: shader.label,
             stage: suffix,
@@ -160,7 +161,7 @@ impl<'a> EntryPoint<'a> {
 
 impl<'a> Binding<'a> {
     fn new(slot: &'a ShaderSlot) -> Self {
-        let stages = STAGES.iter().filter(|(_, flag, _)| slot.stages.has(*flag));
+        let stages = STAGES.iter().filter(|(_, flag, _)| slot.stages.intersects(*flag));
         Self {
             name: &slot.name,
             binding: slot.binding,

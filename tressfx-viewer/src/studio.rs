@@ -34,7 +34,7 @@ impl Studio {
     pub(crate) fn new(run: &mut Run, args: &Render, mesh: Option<Mesh>) -> Result<Self> {
         let view = args.camera.view(&run.groom.rest(), args.size);
         let backend = &mut *run.backend;
-        let mut texture = |label, format| backend.create_texture(&TextureDesc { label, size: args.size, format });
+        let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
         let targets = Targets { color: texture("picture", TARGET)?, depth: texture("depth", Format::Depth32F)? };
         let mut uploads = PassList::new();
         let meshes = mesh
