@@ -2,12 +2,11 @@
 
 use ash::vk;
 use tressfx_core::hazards::{Access, Layout};
-use tressfx_core::id::Resource;
 
-use crate::VulkanBackend;
 use crate::device::Gpu;
-use crate::resource::{Import, Owner, Texture};
+use crate::resource::Texture;
 use crate::tables::{Scope, image_layout, scope, whole, writes};
+use crate::uses::EngineUse;
 
 /// The barrier before one command. Buffers share one memory barrier; each texture has its own, for its layout.
 #[derive(Debug, Default)]
@@ -34,13 +33,13 @@ impl Barrier {
     }
 
     /// A texture comes from its owner.
-    pub(crate) fn acquire(&mut self, texture: &Texture, found: &Import, after: Access) {
+    pub(crate) fn acquire(&mut self, texture: &Texture, found: &EngineUse, after: Access) {
         let layout = image_layout(Layout::of(after), texture.format);
         self.image(texture, ((found.stage, found.access), found.layout), (scope(after, Some(texture.format)), layout));
     }
 
     /// A texture goes back to its owner.
-    pub(crate) fn release(&mut self, texture: &Texture, before: Access, left: &Import) {
+    pub(crate) fn release(&mut self, texture: &Texture, before: Access, left: &EngineUse) {
         let layout = image_layout(Layout::of(before), texture.format);
         self.image(texture, (scope(before, Some(texture.format)), layout), ((left.stage, left.access), left.layout));
     }
@@ -62,6 +61,7 @@ impl Barrier {
     }
 
     /// Writes none from now on, or all again.
+    #[cfg(feature = "faults")]
     pub(crate) fn leave_out(&mut self, left_out: bool) {
         *self = Self { left_out, ..Self::default() };
     }
@@ -85,60 +85,5 @@ impl Barrier {
         (self.before, self.after) = Default::default();
         self.images.clear();
         true
-    }
-}
-
-impl VulkanBackend {
-    /// Adds what has to be waited for before `resource` is used so.
-    pub(crate) fn wait_for(&mut self, resource: Resource, access: Access) {
-        let wait = self.hazards.touch(resource, access);
-        let first = !self.borrowed.contains(&resource);
-        match resource {
-            Resource::Buffer(id) => match &self.buffers.expect(id.0, "record").owner {
-                Owner::Engine { found, .. } if first => {
-                    self.borrowed.push(resource);
-                    self.barrier.buffer((found.stage, found.access), scope(access, None));
-                }
-                _ => wait.iter().for_each(|wait| {
-                    self.barrier.buffer(scope(wait.before, None), scope(wait.after, None));
-                }),
-            },
-            Resource::Texture(id) => {
-                let texture = self.textures.expect(id.0, "record");
-                match &texture.owner {
-                    Owner::Engine { found, .. } if first => {
-                        self.borrowed.push(resource);
-                        self.barrier.acquire(texture, found, access);
-                    }
-                    _ => wait.iter().for_each(|wait| self.barrier.texture(texture, wait.before, wait.after)),
-                }
-            }
-        }
-    }
-
-    /// Gives what was borrowed back, in the use that was promised.
-    pub(crate) fn give_back(&mut self, commands: vk::CommandBuffer) {
-        for resource in std::mem::take(&mut self.borrowed) {
-            let before = self.hazards.release(resource);
-            match resource {
-                Resource::Buffer(id) => {
-                    if let Owner::Engine { left, .. } = &self.buffers.expect(id.0, "record").owner {
-                        self.barrier.buffer(scope(before, None), (left.stage, left.access));
-                    }
-                }
-                Resource::Texture(id) => {
-                    let texture = self.textures.expect(id.0, "record");
-                    if let Owner::Engine { left, .. } = &texture.owner {
-                        self.barrier.release(texture, before, left);
-                    }
-                }
-            }
-        }
-        self.write_barrier(commands);
-    }
-
-    /// Writes what was added since the last one.
-    pub(crate) fn write_barrier(&mut self, commands: vk::CommandBuffer) {
-        self.barriers += u64::from(self.barrier.record(&self.gpu, commands));
     }
 }

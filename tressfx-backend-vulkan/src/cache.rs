@@ -1,7 +1,7 @@
 //! Compiled pipelines, kept in a file from one run to the next.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ash::vk;
 
@@ -10,10 +10,32 @@ use crate::device::Gpu;
 /// What the file begins with.
 const MAGIC: &[u8; 8] = b"tfxcache";
 
+/// A pipeline cache, and where it is kept.
+#[derive(Debug)]
+pub(crate) struct Cache {
+    pub(crate) cache: vk::PipelineCache,
+    path: Option<PathBuf>,
+}
+
+impl Cache {
+    pub(crate) fn load(gpu: &Gpu, path: Option<PathBuf>) -> Self {
+        Self { cache: gpu.load_cache(path.as_deref()), path }
+    }
+
+    pub(crate) fn store(&self, gpu: &Gpu) -> std::io::Result<()> {
+        self.path.as_ref().map_or(Ok(()), |path| gpu.store_cache(self.cache, path))
+    }
+
+    pub(crate) fn destroy(&mut self, gpu: &Gpu) {
+        // SAFETY: no pipeline is being made; null is nothing to destroy.
+        unsafe { gpu.device.destroy_pipeline_cache(std::mem::take(&mut self.cache), None) };
+    }
+}
+
 impl Gpu {
     /// A pipeline cache with what the file holds, if it is there, whole and of this driver; else an empty one; null if not
     /// even that can be made, which Vulkan takes for none.
-    pub(crate) fn load_cache(&self, path: Option<&Path>) -> vk::PipelineCache {
+    fn load_cache(&self, path: Option<&Path>) -> vk::PipelineCache {
         let stored = path.and_then(|path| fs::read(path).ok());
         let data = stored.as_deref().and_then(|file| self.checked(file)).unwrap_or_default();
         let create = |data: &[u8]| {
@@ -40,7 +62,7 @@ impl Gpu {
     }
 
     /// Writes the cache to the file, whole or not at all. A cache that cannot be kept only costs time.
-    pub(crate) fn store_cache(&self, cache: vk::PipelineCache, path: &Path) -> std::io::Result<()> {
+    fn store_cache(&self, cache: vk::PipelineCache, path: &Path) -> std::io::Result<()> {
         // SAFETY: the cache is alive, or null.
         let data = match cache {
             cache if cache == vk::PipelineCache::null() => return Ok(()),

@@ -1,14 +1,16 @@
 //! Opening a device, or sharing an engine's.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use ash::prelude::VkResult;
 use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use tressfx_core::backend::Caps;
-use tressfx_core::error::{Error, Result};
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::shader::SpirvOptions;
 
+use crate::faults::Faults;
 use crate::instance::{Instance, describe, names};
 use crate::label::alone;
 
@@ -17,7 +19,7 @@ use crate::label::alone;
 pub struct VulkanOptions {
     /// A part of the adapter's name, in whatever case; without it the fastest is taken.
     pub adapter: Option<String>,
-    /// Whether the validation layer watches, with synchronization validation: [`run`](tressfx_core::backend::Backend::run)
+    /// Whether the validation layer watches, with synchronization validation: [`run`](tressfx_core::backend::Run::run)
     /// and everything that creates answers its messages as errors.
     pub validation: bool,
     /// Whether shader invocations are counted: see [`Timing`](tressfx_core::backend::Timing).
@@ -28,13 +30,13 @@ pub struct VulkanOptions {
 }
 
 /// An engine's device.
+#[non_exhaustive]
 pub struct VulkanDesc {
     /// The instance that the device was made from.
     pub instance: ash::Instance,
     /// The adapter that the device was made from.
     pub physical_device: vk::PhysicalDevice,
-    /// The device: Vulkan 1.3 with `synchronization2` and `dynamicRendering`, and `independentBlend` where the targets of a pass
-    /// blend differently.
+    /// The device: Vulkan 1.3 with `synchronization2` and `dynamicRendering`.
     pub device: ash::Device,
     /// A queue with graphics and compute: what is recorded goes to it.
     pub queue: vk::Queue,
@@ -48,11 +50,27 @@ pub struct VulkanDesc {
     pub pipeline_cache: Option<PathBuf>,
 }
 
+impl VulkanDesc {
+    /// A device on which nothing was enabled but what is required.
+    pub fn new(
+        instance: ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        device: ash::Device,
+        (queue, queue_family): (vk::Queue, u32),
+        allocator: Arc<Mutex<Allocator>>,
+    ) -> Self {
+        let (enabled, pipeline_cache) = (Enabled::default(), None);
+        Self { instance, physical_device, device, queue, queue_family, allocator, enabled, pipeline_cache }
+    }
+}
+
 /// Features that are used where they are enabled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Enabled {
     /// `fragmentStoresAndAtomics`.
     pub fragment_writes: bool,
+    /// `independentBlend`: targets of one pass may blend differently.
+    pub independent_blend: bool,
     /// `robustBufferAccess2` of VK_EXT_robustness2: shaders need no checks of their own.
     pub robust_buffers: bool,
     /// `robustImageAccess2` of VK_EXT_robustness2.
@@ -74,6 +92,9 @@ pub(crate) struct Gpu {
     pub(crate) debug: Option<ext::debug_utils::Device>,
     pub(crate) enabled: Enabled,
     pub(crate) properties: vk::PhysicalDeviceProperties,
+    /// Why the device is gone, once it is.
+    pub(crate) lost: OnceLock<String>,
+    pub(crate) faults: Faults,
     /// `None` where an engine's device is shared, which is not ours to destroy.
     owned: Option<Instance>,
 }
@@ -92,8 +113,20 @@ impl Gpu {
         let debug = enabled.debug_utils.then(|| ext::debug_utils::Device::new(&instance, &device));
         // SAFETY: the caller promises that they belong together.
         let properties = unsafe { instance.get_physical_device_properties(physical_device) };
-        let owned = None;
-        Self { instance, physical_device, device, queue, queue_family, allocator, debug, enabled, properties, owned }
+        Self {
+            instance,
+            physical_device,
+            device,
+            queue,
+            queue_family,
+            allocator,
+            debug,
+            enabled,
+            properties,
+            lost: OnceLock::new(),
+            faults: Faults::default(),
+            owned: None,
+        }
     }
 
     pub(crate) fn open(options: &VulkanOptions) -> Result<Self> {
@@ -111,13 +144,32 @@ impl Gpu {
             }
         };
         let instance = started.instance.clone();
-        let pipeline_cache = None;
-        let desc =
-            VulkanDesc { instance, physical_device, device, queue, queue_family, allocator, enabled, pipeline_cache };
+        let mut desc = VulkanDesc::new(instance, physical_device, device, (queue, queue_family), allocator);
+        desc.enabled = enabled;
         // SAFETY: they were made from each other.
         let mut gpu = unsafe { Self::share(desc) };
         gpu.owned = Some(started);
         Ok(gpu)
+    }
+
+    /// Makes and names an object.
+    pub(crate) fn create<T: vk::Handle + Copy>(
+        &self,
+        label: Label,
+        make: impl FnOnce(&ash::Device) -> VkResult<T>,
+    ) -> Result<T> {
+        let made = self.faults.next().and_then(|()| make(&self.device));
+        let made = made.map_err(|code| self.failed(code, label, 0))?;
+        self.name(made, label);
+        Ok(made)
+    }
+
+    /// Waits until a device of our own has finished with everything. An engine's says so by itself.
+    pub(crate) fn finish_own(&self) {
+        if self.owned.is_some() {
+            // SAFETY: nobody else has the queue. A lost device has finished too.
+            let _ = unsafe { self.device.queue_wait_idle(self.queue) };
+        }
     }
 
     /// What the validation layer said since the last call.
@@ -152,19 +204,34 @@ impl Gpu {
             .max_per_stage_descriptor_storage_buffers
             .min(limits.max_descriptor_set_storage_buffers)
             .min(limits.max_per_stage_resources);
-        Caps {
-            adapter: describe(&self.properties),
-            compute: true,
-            raster: true,
-            read_back: true,
-            fragment_writes: self.enabled.fragment_writes,
-            // Some devices say a million, which no set of ours is ever to be tried with.
-            max_storage_buffers_per_stage: storage_buffers.min(64),
-            max_storage_binding_bytes: u64::from(limits.max_storage_buffer_range),
-            max_buffer_bytes: more.max_buffer_size,
-            max_texture_edge: limits.max_image_dimension2_d,
-            timestamps: self.times(),
-        }
+        let mut caps = Caps::webgpu_default();
+        caps.adapter = describe(&self.properties);
+        caps.fragment_writes = self.enabled.fragment_writes;
+        caps.r11g11b10_targets = self.draws_to(vk::Format::B10G11R11_UFLOAT_PACK32);
+        // Some devices say a million, which no set of ours is ever to be tried with.
+        caps.max_storage_buffers_per_stage = storage_buffers.min(64);
+        caps.max_storage_textures_per_stage =
+            limits.max_per_stage_descriptor_storage_images.min(limits.max_descriptor_set_storage_images).min(16);
+        caps.max_storage_binding_bytes = limits.max_storage_buffer_range.into();
+        caps.max_uniform_binding_bytes = limits.max_uniform_buffer_range.into();
+        caps.binding_alignment =
+            limits.min_storage_buffer_offset_alignment.max(limits.min_uniform_buffer_offset_alignment).max(4);
+        caps.max_buffer_bytes = more.max_buffer_size;
+        caps.max_texture_edge = limits.max_image_dimension2_d;
+        caps.max_color_targets = limits.max_color_attachments.min(limits.max_fragment_output_attachments);
+        caps.max_group_threads = limits.max_compute_work_group_invocations;
+        caps.max_group_size = limits.max_compute_work_group_size;
+        caps.max_group_memory_bytes = limits.max_compute_shared_memory_size;
+        caps.timestamps = self.times();
+        caps
+    }
+
+    /// Whether a colour target may be of a format, and blend.
+    fn draws_to(&self, format: vk::Format) -> bool {
+        // SAFETY: the instance is alive.
+        let found = unsafe { self.instance.get_physical_device_format_properties(self.physical_device, format) };
+        let wanted = vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+        found.optimal_tiling_features.contains(wanted)
     }
 }
 
@@ -228,6 +295,7 @@ fn open_device(started: &Instance, options: &VulkanOptions) -> Result<Opened> {
     }
     let enabled = Enabled {
         fragment_writes: have.fragment_stores_and_atomics == vk::TRUE,
+        independent_blend: have.independent_blend == vk::TRUE,
         robust_buffers: robustness.robust_buffer_access2 == vk::TRUE,
         robust_images: robustness.robust_image_access2 == vk::TRUE,
         statistics: options.statistics && have.pipeline_statistics_query == vk::TRUE,
@@ -235,9 +303,10 @@ fn open_device(started: &Instance, options: &VulkanOptions) -> Result<Opened> {
     };
     let features = vk::PhysicalDeviceFeatures::default()
         .robust_buffer_access(have.robust_buffer_access == vk::TRUE)
-        .independent_blend(have.independent_blend == vk::TRUE)
+        .independent_blend(enabled.independent_blend)
         .fragment_stores_and_atomics(enabled.fragment_writes)
-        .vertex_pipeline_stores_and_atomics(have.vertex_pipeline_stores_and_atomics == vk::TRUE)
+        // What a shader writes as the first instance of a draw is not ours to know.
+        .draw_indirect_first_instance(have.draw_indirect_first_instance == vk::TRUE)
         .pipeline_statistics_query(enabled.statistics);
     let mut core13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true).dynamic_rendering(true);
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];

@@ -1,10 +1,36 @@
 //! What the driver answers, in words of the contract.
 
 use ash::vk;
-use tressfx_core::error::{Error, Label};
+use tressfx_core::error::{Error, Label, Result};
+
+use crate::device::Gpu;
+
+impl Gpu {
+    /// As [`error`], and keeps in mind that the device is lost.
+    pub(crate) fn failed(&self, code: vk::Result, label: Label, bytes: u64) -> Error {
+        if code == vk::Result::ERROR_DEVICE_LOST {
+            // The first who says so is right.
+            let _ = self.lost.set(format!("the driver said so at {label}"));
+        }
+        error(code, label, bytes)
+    }
+
+    pub(crate) fn is_lost(&self) -> bool {
+        self.lost.get().is_some()
+    }
+
+    pub(crate) fn check_lost(&self) -> Result<()> {
+        self.lost.get().map_or(Ok(()), |reason| Err(Error::DeviceLost { reason: reason.clone() }))
+    }
+}
+
+/// Something of a newer contract.
+pub(crate) fn unknown(label: Label, what: impl std::fmt::Debug) -> Error {
+    Error::Backend { label, message: format!("this backend does not know {what:?}") }
+}
 
 /// `bytes` were asked for, if any.
-pub(crate) fn error(code: vk::Result, label: Label, bytes: u64) -> Error {
+fn error(code: vk::Result, label: Label, bytes: u64) -> Error {
     match code {
         vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
             Error::OutOfMemory { label, bytes }

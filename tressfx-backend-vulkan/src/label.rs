@@ -1,6 +1,8 @@
 //! Names of objects and passes, as debuggers show them.
 
+use std::cell::RefCell;
 use std::ffi::CString;
+use std::marker::PhantomData;
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 
 use ash::vk;
@@ -12,10 +14,37 @@ use crate::device::Gpu;
 /// device in lists that it does not guard, and crashes where another thread changes them.
 static OPEN: RwLock<()> = RwLock::new(());
 
+thread_local! {
+    /// How often this thread is alone, and what keeps the others out.
+    static HELD: RefCell<(u32, Option<RwLockWriteGuard<'static, ()>>)> = const { RefCell::new((0, None)) };
+}
+
+/// See [`alone`]. It stays on its thread.
+#[derive(Debug)]
+#[must_use = "others are kept out for as long as it is held"]
+pub struct Alone(PhantomData<*const ()>);
+
 /// Held by an engine that makes, asks or destroys instances or devices of its own while a backend is used on another thread: no
-/// object is named meanwhile.
-pub fn alone() -> RwLockWriteGuard<'static, ()> {
-    OPEN.write().unwrap_or_else(PoisonError::into_inner)
+/// object is named meanwhile. A thread may hold several.
+pub fn alone() -> Alone {
+    let is_alone = HELD.with_borrow(|held| held.0 > 0);
+    let guard = (!is_alone).then(|| OPEN.write().unwrap_or_else(PoisonError::into_inner));
+    HELD.with_borrow_mut(|held| {
+        held.0 += 1;
+        held.1 = held.1.take().or(guard);
+    });
+    Alone(PhantomData)
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        HELD.with_borrow_mut(|held| {
+            held.0 -= 1;
+            if held.0 == 0 {
+                held.1 = None;
+            }
+        });
+    }
 }
 
 impl Gpu {
@@ -24,15 +53,17 @@ impl Gpu {
         let Some(debug) = &self.debug else { return };
         let name = CString::new(label).unwrap_or_default();
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
-        let _nothing_changes = OPEN.read().unwrap_or_else(PoisonError::into_inner);
+        let is_alone = HELD.with_borrow(|held| held.0 > 0);
+        let _nothing_changes = (!is_alone).then(|| OPEN.read().unwrap_or_else(PoisonError::into_inner));
         // SAFETY: the object is alive. A name that could not be given is no reason to stop.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    /// Opens a group of commands.
-    pub(crate) fn begin_label(&self, commands: vk::CommandBuffer, label: Label) {
+    /// Opens a group of commands: a pass, and whose it is.
+    pub(crate) fn begin_label(&self, commands: vk::CommandBuffer, label: Label, scope: Option<&str>) {
         let Some(debug) = &self.debug else { return };
-        let name = CString::new(label).unwrap_or_default();
+        let name = scope.map_or_else(|| label.to_owned(), |scope| format!("{label} of {scope}"));
+        let name = CString::new(name).unwrap_or_default();
         let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
         // SAFETY: the command buffer is being recorded.
         unsafe { debug.cmd_begin_debug_utils_label(commands, &info) };
@@ -43,5 +74,21 @@ impl Gpu {
         let Some(debug) = &self.debug else { return };
         // SAFETY: as above.
         unsafe { debug.cmd_end_debug_utils_label(commands) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_that_is_alone_may_be_alone_again_and_others_wait_for_the_last() {
+        let (outer, inner) = (alone(), alone());
+        let other = std::thread::spawn(|| drop(alone()));
+        drop(outer);
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        assert!(!other.is_finished(), "the second is still held");
+        drop(inner);
+        other.join().unwrap();
     }
 }

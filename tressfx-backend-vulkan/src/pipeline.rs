@@ -1,16 +1,15 @@
 //! Pipelines.
 
 use ash::vk;
-use tressfx_core::backend::{ComputeDesc, Kernel, Need, RasterDesc};
-use tressfx_core::error::{Label, Result};
-use tressfx_core::id::PipelineId;
+use tressfx_core::backend::{ComputeDesc, RasterDesc};
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::naga::ShaderStage;
-use tressfx_core::shader::{Shader, Stages};
+use tressfx_core::shader::{Kernel, RasterPipeline, Shader, SlotKind, Stages};
 
 use crate::VulkanBackend;
 use crate::device::Gpu;
-use crate::error::error;
-use crate::frame::Garbage;
+use crate::error::unknown;
+use crate::frames::Garbage;
 use crate::tables::{blend_state, depth_state, layout_binding, texture_format};
 
 /// A pipeline and its layouts.
@@ -24,114 +23,155 @@ pub(crate) struct Pipeline {
 
 impl VulkanBackend {
     pub(crate) fn make_compute(&mut self, desc: &ComputeDesc) -> Result<Kernel> {
+        desc.check(self.catalog.caps())?;
+        self.gpu.check_lost()?;
         let shader = &desc.shader;
+        self.gpu.check_slots(shader)?;
         let entry = c_name(&shader.entry_point(ShaderStage::Compute)?.name);
-        self.caps.check(shader.label, &[Need::StorageBuffers(shader.storage_buffers())])?;
         let module = self.gpu.module(shader, ShaderStage::Compute)?;
-        let made = self.gpu.layouts(shader).and_then(|(set_layout, layout)| {
+        let made = self.gpu.layouts(shader).and_then(|layouts| {
             let stage = stage(vk::ShaderStageFlags::COMPUTE, module, &entry);
-            let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
-            // SAFETY: module and layout are alive and belong together: both come from the shader.
-            let made = unsafe { self.gpu.device.create_compute_pipelines(self.cache, &[info], None) };
-            self.gpu.pipeline(made, shader.label, set_layout, layout, vk::PipelineBindPoint::COMPUTE)
+            let info = [vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.1)];
+            self.gpu.pipeline(shader.label, layouts, vk::PipelineBindPoint::COMPUTE, |device| {
+                // SAFETY: module and layout are alive and belong together: both come from the shader.
+                unsafe { device.create_compute_pipelines(self.cache.cache, &info, None) }
+            })
         });
         // SAFETY: a pipeline does not need its module once it is made.
         unsafe { self.gpu.device.destroy_shader_module(module, None) };
-        let pipeline = made.and_then(|made| self.validated(shader.label, made, Garbage::Pipeline))?;
-        Ok(Kernel { pipeline: self.pipelines.insert(pipeline).into(), shader: shader.clone() })
+        let pipeline = made.and_then(|made| self.heard_about(shader.label, made))?;
+        Ok(self.catalog.add_compute(desc, pipeline))
     }
 
-    pub(crate) fn make_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
+    pub(crate) fn make_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
+        desc.check(self.catalog.caps())?;
+        self.gpu.check_lost()?;
         let shader = &desc.shader;
-        let needs = [Need::FragmentWrites, Need::StorageBuffers(shader.storage_buffers())];
-        self.caps.check(shader.label, if writes_in_fragments(shader) { &needs } else { &needs[1..] })?;
+        self.gpu.check_slots(shader)?;
+        let differ = desc.targets.windows(2).any(|pair| pair[0].1 != pair[1].1);
+        if differ && !self.gpu.enabled.independent_blend {
+            return Err(Error::rule(shader.label, "its targets blend differently, which is not enabled on the device"));
+        }
         let vertex = self.gpu.module(shader, ShaderStage::Vertex)?;
-        let made = self.gpu.module(shader, ShaderStage::Fragment).and_then(|fragment| {
-            let made = self.gpu.raster(desc, [vertex, fragment], self.cache);
-            // SAFETY: as above.
-            unsafe { self.gpu.device.destroy_shader_module(fragment, None) };
+        let fragment = shader.has_fragment_stage().then(|| self.gpu.module(shader, ShaderStage::Fragment)).transpose();
+        let made = fragment.and_then(|fragment| {
+            let made = self.gpu.raster(desc, (vertex, fragment), self.cache.cache);
+            // SAFETY: as above; null is nothing to destroy.
+            unsafe { self.gpu.device.destroy_shader_module(fragment.unwrap_or_default(), None) };
             made
         });
         // SAFETY: as above.
         unsafe { self.gpu.device.destroy_shader_module(vertex, None) };
-        let pipeline = made.and_then(|made| self.validated(shader.label, made, Garbage::Pipeline))?;
-        Ok(Kernel { pipeline: self.pipelines.insert(pipeline).into(), shader: shader.clone() })
+        let pipeline = made.and_then(|made| self.heard_about(shader.label, made))?;
+        Ok(self.catalog.add_raster(desc, pipeline))
     }
 
-    pub(crate) fn forget_pipeline(&mut self, id: PipelineId) {
-        let Some(pipeline) = self.pipelines.remove(id.0) else { return };
-        self.forget_sets(|of, _| of == id);
-        self.throw_away(Garbage::Pipeline(pipeline));
-    }
-
-    pub(crate) fn pipeline(&self, id: PipelineId, what: &str) -> &Pipeline {
-        self.pipelines.expect(id.0, what)
+    /// What was made, unless the validation layer had something to say about it.
+    fn heard_about(&mut self, label: Label, made: Pipeline) -> Result<Pipeline> {
+        match self.heard() {
+            Ok(()) => Ok(made),
+            Err(error) => {
+                self.throw_away(Garbage::Pipeline(made));
+                Err(Error::Backend { label, message: error.to_string() })
+            }
+        }
     }
 }
 
 impl Gpu {
+    /// What a device must have for what a shader binds, beside what the contract counts.
+    fn check_slots(&self, shader: &Shader) -> Result<()> {
+        let limits = &self.properties.limits;
+        for stage in [Stages::COMPUTE, Stages::VERTEX, Stages::FRAGMENT] {
+            let count = |of: fn(SlotKind) -> bool| {
+                let slots = shader.slots.iter().filter(|slot| slot.stages.intersects(stage) && of(slot.kind));
+                slots.count() as u32
+            };
+            let sampled = |kind: SlotKind| kind.is_texture() && !kind.is_written();
+            for (what, count, most) in [
+                (
+                    "uniform buffers",
+                    count(|kind| kind == SlotKind::Uniform),
+                    limits.max_per_stage_descriptor_uniform_buffers,
+                ),
+                ("textures", count(sampled), limits.max_per_stage_descriptor_sampled_images),
+                ("samplers", count(|kind| kind == SlotKind::Sampler), limits.max_per_stage_descriptor_samplers),
+                ("bindings", count(|_| true), limits.max_per_stage_resources),
+            ] {
+                if count > most {
+                    return Err(Error::rule(shader.label, format!("{count} {what} in a stage, the device has {most}")));
+                }
+            }
+        }
+        match shader.slots.iter().find(|slot| slot.kind.is_written() && slot.stages.intersects(Stages::VERTEX)) {
+            Some(slot) => Err(Error::rule(shader.label, format!("`{}`: vertex stages write nothing", slot.name))),
+            None => Ok(()),
+        }
+    }
+
     fn module(&self, shader: &Shader, stage: ShaderStage) -> Result<vk::ShaderModule> {
         let words = shader.spirv(stage, &self.spirv())?;
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: naga has validated what the words were made from.
-        let module = unsafe { self.device.create_shader_module(&info, None) };
-        let module = module.map_err(|code| error(code, shader.label, 0))?;
-        self.name(module, shader.label);
-        Ok(module)
+        self.create(shader.label, |device| unsafe { device.create_shader_module(&info, None) })
     }
 
     fn layouts(&self, shader: &Shader) -> Result<(vk::DescriptorSetLayout, vk::PipelineLayout)> {
         let label = shader.label;
-        let bindings: Vec<_> = shader.slots.iter().map(layout_binding).collect();
+        let binding = |slot| layout_binding(slot).ok_or_else(|| unknown(label, slot.kind));
+        let bindings = shader.slots.iter().map(binding).collect::<Result<Vec<_>>>()?;
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
         // SAFETY: the device is alive.
-        let set = unsafe { self.device.create_descriptor_set_layout(&info, None) };
-        let set = set.map_err(|code| error(code, label, 0))?;
-        self.name(set, label);
+        let set = self.create(label, |device| unsafe { device.create_descriptor_set_layout(&info, None) })?;
         let sets = [set];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         // SAFETY: as above.
-        let layout = unsafe { self.device.create_pipeline_layout(&info, None) }.map_err(|code| {
+        let layout = self.create(label, |device| unsafe { device.create_pipeline_layout(&info, None) });
+        let layout = layout.inspect_err(|_| {
             // SAFETY: nothing uses it.
             unsafe { self.device.destroy_descriptor_set_layout(set, None) };
-            error(code, label, 0)
         })?;
-        self.name(layout, label);
         Ok((set, layout))
     }
 
-    /// What came of creating one pipeline.
+    /// One pipeline. Its layouts go with it where it cannot be made.
     fn pipeline(
         &self,
-        made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
         label: Label,
-        set_layout: vk::DescriptorSetLayout,
-        layout: vk::PipelineLayout,
+        (set_layout, layout): (vk::DescriptorSetLayout, vk::PipelineLayout),
         point: vk::PipelineBindPoint,
+        make: impl FnOnce(&ash::Device) -> Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
     ) -> Result<Pipeline> {
-        let pipeline = Pipeline { pipeline: vk::Pipeline::null(), layout, set_layout, point };
-        match made {
-            Ok(made) => {
-                self.name(made[0], label);
-                Ok(Pipeline { pipeline: made[0], ..pipeline })
-            }
-            Err((_, code)) => {
-                self.destroy_pipeline(pipeline);
-                Err(error(code, label, 0))
+        let pipeline = self.create(label, |device| make(device).map(|made| made[0]).map_err(|(_, code)| code));
+        let without = Pipeline { pipeline: vk::Pipeline::null(), layout, set_layout, point };
+        match pipeline {
+            Ok(pipeline) => Ok(Pipeline { pipeline, ..without }),
+            Err(error) => {
+                self.destroy_pipeline(without);
+                Err(error)
             }
         }
     }
 
-    fn raster(&self, desc: &RasterDesc, modules: [vk::ShaderModule; 2], cache: vk::PipelineCache) -> Result<Pipeline> {
+    fn raster(
+        &self,
+        desc: &RasterDesc,
+        (vertex, fragment): (vk::ShaderModule, Option<vk::ShaderModule>),
+        cache: vk::PipelineCache,
+    ) -> Result<Pipeline> {
         let shader = &desc.shader;
-        let names = [ShaderStage::Vertex, ShaderStage::Fragment].map(|stage| shader.entry_point(stage));
-        let [vertex, fragment] = names;
-        let (vertex, fragment) = (c_name(&vertex?.name), c_name(&fragment?.name));
-        let (set_layout, layout) = self.layouts(shader)?;
-        let stages = [
-            stage(vk::ShaderStageFlags::VERTEX, modules[0], &vertex),
-            stage(vk::ShaderStageFlags::FRAGMENT, modules[1], &fragment),
-        ];
+        let vertex_name = c_name(&shader.entry_point(ShaderStage::Vertex)?.name);
+        let mut stages = vec![stage(vk::ShaderStageFlags::VERTEX, vertex, &vertex_name)];
+        let fragment_name;
+        if let Some(fragment) = fragment {
+            fragment_name = c_name(&shader.entry_point(ShaderStage::Fragment)?.name);
+            stages.push(stage(vk::ShaderStageFlags::FRAGMENT, fragment, &fragment_name));
+        }
+        let format = |&(format, _)| texture_format(format).ok_or_else(|| unknown(shader.label, format));
+        let formats = desc.targets.iter().map(format).collect::<Result<Vec<_>>>()?;
+        let blend = |&(_, blend)| blend_state(blend).ok_or_else(|| unknown(shader.label, blend));
+        let blends = desc.targets.iter().map(blend).collect::<Result<Vec<_>>>()?;
+        let (depth, depth_format) = depth_state(desc.depth).ok_or_else(|| unknown(shader.label, desc.depth))?;
         let input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly =
             vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::TRIANGLE_LIST);
@@ -139,20 +179,14 @@ impl Gpu {
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
         let samples =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth = depth_state(desc.depth);
-        let blends: Vec<_> = desc.targets.iter().map(|&(_, blend)| blend_state(blend)).collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let formats: Vec<_> = desc.targets.iter().map(|&(format, _)| texture_format(format)).collect();
-        let depth_format = match desc.depth {
-            tressfx_core::backend::Depth::Off => vk::Format::UNDEFINED,
-            tressfx_core::backend::Depth::TestWrite(_) => vk::Format::D32_SFLOAT,
-        };
         let mut targets = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&formats)
             .depth_attachment_format(depth_format);
-        let info = vk::GraphicsPipelineCreateInfo::default()
+        let layouts = self.layouts(shader)?;
+        let info = [vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&input)
             .input_assembly_state(&assembly)
@@ -162,11 +196,12 @@ impl Gpu {
             .depth_stencil_state(&depth)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
-            .layout(layout)
-            .push_next(&mut targets);
-        // SAFETY: modules and layout are alive and belong together, and all pointers live until the call is over.
-        let made = unsafe { self.device.create_graphics_pipelines(cache, &[info], None) };
-        self.pipeline(made, shader.label, set_layout, layout, vk::PipelineBindPoint::GRAPHICS)
+            .layout(layouts.1)
+            .push_next(&mut targets)];
+        self.pipeline(shader.label, layouts, vk::PipelineBindPoint::GRAPHICS, |device| {
+            // SAFETY: modules and layout are alive and belong together, and all pointers live until the call is over.
+            unsafe { device.create_graphics_pipelines(cache, &info, None) }
+        })
     }
 
     pub(crate) fn destroy_pipeline(&self, pipeline: Pipeline) {
@@ -187,11 +222,7 @@ fn stage<'a>(
     vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(entry)
 }
 
+/// WGSL names hold no zero.
 fn c_name(name: &str) -> std::ffi::CString {
-    std::ffi::CString::new(name).expect("WGSL names hold no zero")
-}
-
-fn writes_in_fragments(shader: &Shader) -> bool {
-    let writes = |slot: &tressfx_core::shader::ShaderSlot| slot.kind == tressfx_core::shader::SlotKind::ReadWrite;
-    shader.slots.iter().any(|slot| writes(slot) && slot.stages.has(Stages::FRAGMENT))
+    std::ffi::CString::new(name).unwrap_or_default()
 }

@@ -3,258 +3,286 @@
 use ash::vk;
 use gpu_allocator::MemoryLocation;
 use tressfx_core::backend::{Record, Timing};
-use tressfx_core::check::check;
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::hazards::{Access, accesses};
 use tressfx_core::id::{Resource, TextureId};
-use tressfx_core::pass::{Command, ComputePass, Grid, Groups, Load, PassList, RasterPass};
+use tressfx_core::pass::{Command, PassList};
 
-use crate::VulkanBackend;
-use crate::frame::Recording;
+use crate::device::Gpu;
+use crate::frames::Recording;
+use crate::reads::Copy;
+use crate::sets::Sets;
 use crate::tables::whole;
+use crate::timer::Timer;
+use crate::tracker::Tracker;
+use crate::{Resources, VulkanBackend};
+
+/// A command buffer of the engine's, which lists can be recorded into.
+#[derive(Debug)]
+pub struct Commands {
+    buffer: vk::CommandBuffer,
+    device: vk::Device,
+    family: u32,
+}
+
+impl Commands {
+    /// A command buffer that lists are recorded into by `backend`, and by no other.
+    ///
+    /// # Safety
+    /// * It is a primary command buffer of the backend's device and queue family, and until this value is dropped it is being
+    ///   recorded, outside of a render pass, and by one thread at a time.
+    /// * It is submitted to the backend's queue once: after everything that was recorded before it, before everything that is
+    ///   recorded after it, and before the backend [runs](tressfx_core::backend::Run::run) a list by itself. Or it is never
+    ///   submitted, and the backend is told so by [`VulkanBackend::discard`] before it records the next list into another
+    ///   command buffer, or runs one.
+    pub unsafe fn new(backend: &VulkanBackend, buffer: vk::CommandBuffer) -> Self {
+        Self { buffer, device: backend.gpu.device.handle(), family: backend.gpu.queue_family }
+    }
+
+    /// The command buffer.
+    pub fn raw(&self) -> vk::CommandBuffer {
+        self.buffer
+    }
+}
 
 impl Record for VulkanBackend {
-    type Encoder = vk::CommandBuffer;
+    type Encoder = Commands;
 
-    fn record(&mut self, encoder: &mut vk::CommandBuffer, list: &PassList) -> Result<()> {
-        check(list);
-        self.check_lost()?;
-        self.collect();
+    fn record(&mut self, encoder: &mut Commands, list: &PassList) -> Result<()> {
+        if (encoder.device, encoder.family) != (self.gpu.device.handle(), self.gpu.queue_family) {
+            return Err(Error::rule("record", "the command buffer is of another device or another family of queues"));
+        }
+        self.sweep();
+        self.catalog.check(list)?;
+        self.gpu.check_lost()?;
+        self.time();
         let mut recording = self.frames.begin(&self.gpu)?;
-        recording.before = self.hazards.clone();
-        let recorded =
-            self.prepare(list, &mut recording).and_then(|()| self.encode_all(*encoder, list, &mut recording));
-        // Even where something failed: what was written so far may run.
-        recording.end(&self.gpu, *encoder);
-        self.frames.end(recording);
-        self.noted(recorded)
+        let copies = match self.prepare(list, &mut recording) {
+            Ok(copies) => copies,
+            Err(error) => {
+                self.frames.reuse(&self.gpu, &mut self.sets, recording);
+                return Err(error);
+            }
+        };
+        let Self { catalog, sets, timer, tracker, gpu, .. } = self;
+        let (commands, resources) = (encoder.buffer, &*catalog);
+        Recorder { gpu, resources, sets, timer, tracker, commands, recording: &mut recording }.list(list, &copies);
+        recording.undo = self.tracker.hazards.end_recording();
+        recording.tickets.extend(copies.iter().map(|copy| copy.ticket));
+        let number = recording.number;
+        self.frames.add(recording);
+        for copy in copies {
+            if let Some(unread) = self.reads.add(copy, number) {
+                self.throw_away(crate::frames::Garbage::Host(unread));
+            }
+        }
+        Ok(())
     }
 }
 
 impl VulkanBackend {
-    /// Everything that can fail for want of memory, before anything is written.
-    fn prepare(&mut self, list: &PassList, recording: &mut Recording) -> Result<()> {
-        for command in &list.commands {
+    /// Everything that can fail, before anything is written: sets, the bytes of uploads, queries, and room for what is read
+    /// back, in the order of its commands.
+    fn prepare(&mut self, list: &PassList, recording: &mut Recording) -> Result<Vec<Copy>> {
+        let Self { catalog, sets, timer, gpu, .. } = self;
+        for command in list.commands() {
             match command {
-                Command::Compute(pass) => self.prepare_set(&pass.kernel, &pass.bindings)?,
-                Command::Raster(pass) => {
-                    pass.draws.iter().try_for_each(|draw| self.prepare_set(&draw.kernel, &draw.bindings))?;
+                Command::Compute(pass) => {
+                    let kernel = (pass.kernel.pipeline, &*pass.kernel.shader);
+                    sets.prepare(gpu, catalog, kernel, &pass.bindings)?;
                 }
+                Command::Raster(pass) => pass.draws.iter().try_for_each(|draw| {
+                    sets.prepare(gpu, catalog, (draw.pipeline.pipeline, &*draw.pipeline.shader), &draw.bindings)
+                })?,
                 _ => {}
             }
         }
-        let bytes = list.bytes.len() as u64;
-        if recording.uploads.as_ref().is_none_or(|uploads| uploads.bytes < bytes) && bytes > 0 {
-            let room = bytes.next_power_of_two();
-            let larger = self.gpu.host_buffer("hair.uploads", room, MemoryLocation::CpuToGpu)?;
-            recording.uploads.replace(larger).into_iter().for_each(|uploads| self.gpu.free_host(uploads));
+        timer.prepare(gpu, &mut recording.queries, list.passes().count())?;
+        prepare_uploads(gpu, list.bytes(), recording)?;
+        let mut copies = Vec::new();
+        for command in list.commands() {
+            match copy(gpu, catalog, command) {
+                None => {}
+                Some(Ok(copy)) => copies.push(copy),
+                Some(Err(error)) => {
+                    copies.into_iter().for_each(|copy| gpu.free_host(copy.memory));
+                    return Err(error);
+                }
+            }
         }
-        if let Some(memory) = recording.uploads.as_mut().and_then(|uploads| uploads.memory.mapped_slice_mut()) {
-            memory[..list.bytes.len()].copy_from_slice(&list.bytes);
-        }
-        Ok(())
+        Ok(copies)
     }
+}
 
-    fn encode_all(&mut self, commands: vk::CommandBuffer, list: &PassList, recording: &mut Recording) -> Result<()> {
-        self.timer.begin(&self.gpu, commands, &mut recording.queries, list.passes().count())?;
-        self.zero(commands, recording);
-        let encoded = list.commands.iter().try_for_each(|command| self.encode(commands, command, recording));
-        // Where it failed too: what was written so far may run, and the next list must find nothing borrowed.
-        self.give_back(commands);
-        if list
-            .commands
-            .iter()
-            .any(|command| matches!(command, Command::ReadBuffer { .. } | Command::ReadTexture { .. }))
-        {
+fn prepare_uploads(gpu: &Gpu, data: &[u8], recording: &mut Recording) -> Result<()> {
+    let bytes = data.len() as u64;
+    if recording.uploads.as_ref().is_none_or(|uploads| uploads.bytes < bytes) && bytes > 0 {
+        let room = bytes.next_power_of_two();
+        let larger = gpu.host_buffer("hair.uploads", room, MemoryLocation::CpuToGpu)?;
+        recording.uploads.replace(larger).into_iter().for_each(|uploads| gpu.free_host(uploads));
+    }
+    if let Some(memory) = recording.uploads.as_mut().and_then(|uploads| uploads.memory.mapped_slice_mut()) {
+        memory[..data.len()].copy_from_slice(data);
+    }
+    Ok(())
+}
+
+/// Room for what a command reads back.
+fn copy(gpu: &Gpu, resources: &Resources, command: &Command) -> Option<Result<Copy>> {
+    let (ticket, bytes) = match *command {
+        Command::ReadBuffer { bytes, ticket, .. } => (ticket, bytes),
+        Command::ReadTexture { src, ticket } => (ticket, resources.bytes(src.into())),
+        _ => return None,
+    };
+    let memory = gpu.host_buffer("hair.read_back", bytes.max(4), MemoryLocation::GpuToCpu);
+    Some(memory.map(|memory| Copy { ticket, memory, bytes }))
+}
+
+/// Writes one list. Nothing can fail any more: the list was checked, and what it needs is there.
+pub(crate) struct Recorder<'a> {
+    pub(crate) gpu: &'a Gpu,
+    pub(crate) resources: &'a Resources,
+    pub(crate) sets: &'a Sets,
+    timer: &'a Timer,
+    tracker: &'a mut Tracker,
+    pub(crate) commands: vk::CommandBuffer,
+    recording: &'a mut Recording,
+}
+
+impl Recorder<'_> {
+    fn list(&mut self, list: &PassList, copies: &[Copy]) {
+        self.timer.begin(self.gpu, self.commands, &self.recording.queries, list.passes().count());
+        self.zero();
+        let mut left = copies.iter();
+        list.commands().iter().for_each(|command| self.command(command, &mut left));
+        self.tracker.give_back(self.gpu, self.resources, self.commands);
+        if !copies.is_empty() {
             let copied = (vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
-            self.barrier.buffer(copied, (vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ));
-            self.write_barrier(commands);
+            self.tracker.barrier.buffer(copied, (vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ));
+            self.tracker.write(self.gpu, self.commands);
         }
-        encoded
+        self.recording.end(self.gpu, self.commands);
     }
 
-    fn encode(&mut self, commands: vk::CommandBuffer, command: &Command, recording: &mut Recording) -> Result<()> {
+    /// `copies` are those of the commands from here on.
+    fn command<'c>(&mut self, command: &Command, copies: &mut impl Iterator<Item = &'c Copy>) {
         if does_nothing(command) {
-            return Ok(());
+            return;
         }
         let accesses = accesses(command);
-        accesses.iter().for_each(|&(resource, access)| self.wait_for(resource, access));
-        self.write_barrier(commands);
+        accesses.iter().for_each(|&(resource, access)| self.tracker.wait_for(self.resources, resource, access));
+        self.tracker.write(self.gpu, self.commands);
+        let resources = self.resources;
         match command {
             Command::Upload { dst, offset, data } => {
-                let Some(uploads) = &recording.uploads else { return Ok(()) };
+                let Some(uploads) = &self.recording.uploads else { return };
                 let (src_offset, size) = (data.start as u64, data.len() as u64);
                 let region = vk::BufferCopy { src_offset, dst_offset: *offset, size };
-                self.copy(commands, uploads.buffer, self.buffer(*dst, "upload").buffer, region);
+                self.copy(uploads.buffer, resources.buffer(*dst).buffer, region);
             }
             Command::Clear { dst, offset, bytes } => {
-                let dst = self.buffer(*dst, "clear").buffer;
+                let dst = resources.buffer(*dst).buffer;
                 // SAFETY: the command buffer is being recorded, and the buffer lives until it has run.
-                unsafe { self.gpu.device.cmd_fill_buffer(commands, dst, *offset, *bytes, 0) };
+                unsafe { self.gpu.device.cmd_fill_buffer(self.commands, dst, *offset, *bytes, 0) };
             }
             Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
                 let region = vk::BufferCopy { src_offset: *src_offset, dst_offset: *dst_offset, size: *bytes };
-                self.copy(commands, self.buffer(*src, "copy").buffer, self.buffer(*dst, "copy").buffer, region);
+                self.copy(resources.buffer(*src).buffer, resources.buffer(*dst).buffer, region);
             }
-            Command::Compute(pass) => {
-                let label = pass.kernel.label();
-                self.begin_pass(commands, label, &accesses, recording);
-                self.encode_compute(commands, pass);
-                self.end_pass(commands, recording);
+            Command::CopyToTexture { src, offset, row_bytes, dst } => {
+                self.copy_to_texture(resources.buffer(*src).buffer, *offset, *row_bytes, *dst);
             }
-            Command::Raster(pass) => {
-                self.begin_pass(commands, pass.label, &accesses, recording);
-                self.encode_raster(commands, pass);
-                self.end_pass(commands, recording);
+            Command::Compute(pass) => self.pass(command, &accesses, |recorder| recorder.compute(pass)),
+            Command::Raster(pass) => self.pass(command, &accesses, |recorder| recorder.raster(pass)),
+            Command::ReadBuffer { src, offset, bytes, .. } => {
+                let Some(copy) = copies.next() else { return };
+                let region = vk::BufferCopy { src_offset: *offset, dst_offset: 0, size: *bytes };
+                if *bytes > 0 {
+                    self.copy(resources.buffer(*src).buffer, copy.memory.buffer, region);
+                }
             }
-            Command::ReadBuffer { src, offset, bytes, ticket } => {
-                self.encode_read_buffer(commands, (*src, *offset, *bytes), *ticket, recording.number)?;
+            Command::ReadTexture { src, .. } => {
+                let Some(copy) = copies.next() else { return };
+                self.copy_from_texture(*src, copy.memory.buffer);
             }
-            Command::ReadTexture { src, ticket } => {
-                self.encode_read_texture(commands, *src, *ticket, recording.number)?;
-            }
+            // The check of the list knows all commands that there are.
+            _ => {}
         }
-        Ok(())
     }
 
-    fn copy(&self, commands: vk::CommandBuffer, src: vk::Buffer, dst: vk::Buffer, region: vk::BufferCopy) {
+    fn copy(&self, src: vk::Buffer, dst: vk::Buffer, region: vk::BufferCopy) {
         // SAFETY: the command buffer is being recorded, and both buffers live until it has run.
-        unsafe { self.gpu.device.cmd_copy_buffer(commands, src, dst, &[region]) };
+        unsafe { self.gpu.device.cmd_copy_buffer(self.commands, src, dst, &[region]) };
+    }
+
+    fn copy_to_texture(&self, src: vk::Buffer, offset: u64, row_bytes: u32, dst: TextureId) {
+        let format = self.resources.texture(dst).format;
+        let region = [self.region(dst).buffer_offset(offset).buffer_row_length(row_bytes / format.bytes())];
+        let (image, layout) = (self.resources.texture(dst).image, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        // SAFETY: as above; the barrier before it has put the texture into this layout.
+        unsafe { self.gpu.device.cmd_copy_buffer_to_image(self.commands, src, image, layout, &region) };
+    }
+
+    fn copy_from_texture(&self, src: TextureId, dst: vk::Buffer) {
+        let (image, layout) = (self.resources.texture(src).image, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+        let region = [self.region(src)];
+        // SAFETY: as above.
+        unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.commands, image, layout, dst, &region) };
+    }
+
+    /// All of a texture, rows without padding.
+    fn region(&self, id: TextureId) -> vk::BufferImageCopy {
+        let texture = self.resources.texture(id);
+        let aspect_mask = whole(texture.format).aspect_mask;
+        let layers = vk::ImageSubresourceLayers { aspect_mask, layer_count: 1, ..Default::default() };
+        let [width, height] = texture.size;
+        vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D { width, height, depth: 1 })
     }
 
     /// What was made since the last list begins with zeros.
-    fn zero(&mut self, commands: vk::CommandBuffer, recording: &mut Recording) {
-        recording.zeroed.append(&mut self.not_zeroed);
-        recording.zeroed.iter().for_each(|&resource| self.wait_for(resource, Access::COPY_WRITE));
-        self.write_barrier(commands);
-        for &resource in &recording.zeroed {
+    fn zero(&mut self) {
+        self.recording.zeroed.append(&mut self.tracker.not_zeroed);
+        for &resource in &self.recording.zeroed {
+            self.tracker.wait_for(self.resources, resource, Access::COPY_WRITE);
+        }
+        self.tracker.write(self.gpu, self.commands);
+        for &resource in &self.recording.zeroed {
             match resource {
                 Resource::Buffer(id) => {
-                    let buffer = self.buffer(id, "zero").buffer;
+                    let buffer = self.resources.buffer(id).buffer;
                     // SAFETY: as above.
-                    unsafe { self.gpu.device.cmd_fill_buffer(commands, buffer, 0, vk::WHOLE_SIZE, 0) };
+                    unsafe { self.gpu.device.cmd_fill_buffer(self.commands, buffer, 0, vk::WHOLE_SIZE, 0) };
                 }
-                Resource::Texture(id) => self.zero_texture(commands, id),
+                Resource::Texture(id) => self.zero_texture(id),
             }
         }
     }
 
-    fn zero_texture(&self, commands: vk::CommandBuffer, id: TextureId) {
-        let texture = self.texture(id, "zero");
+    fn zero_texture(&self, id: TextureId) {
+        let texture = self.resources.texture(id);
         let (layout, range) = (vk::ImageLayout::TRANSFER_DST_OPTIMAL, [whole(texture.format)]);
         let (color, depth) = (vk::ClearColorValue::default(), vk::ClearDepthStencilValue::default());
         let device = &self.gpu.device;
         // SAFETY: as above; the barrier before it has put the texture into this layout.
         unsafe {
             if texture.format.is_depth() {
-                device.cmd_clear_depth_stencil_image(commands, texture.image, layout, &depth, &range);
+                device.cmd_clear_depth_stencil_image(self.commands, texture.image, layout, &depth, &range);
             } else {
-                device.cmd_clear_color_image(commands, texture.image, layout, &color, &range);
+                device.cmd_clear_color_image(self.commands, texture.image, layout, &color, &range);
             }
         }
     }
 
-    fn begin_pass(
-        &self,
-        commands: vk::CommandBuffer,
-        label: Label,
-        accesses: &[(Resource, Access)],
-        recording: &mut Recording,
-    ) {
-        self.gpu.begin_label(commands, label);
-        let bytes = accesses.iter().map(|&(resource, _)| self.bytes(resource)).sum();
-        let pass = Timing { label, begin: 0.0, nanoseconds: 0.0, bytes, invocations: None };
-        self.timer.begin_pass(&self.gpu, commands, &mut recording.queries, pass);
-    }
-
-    fn end_pass(&self, commands: vk::CommandBuffer, recording: &Recording) {
-        self.timer.end_pass(&self.gpu, commands, &recording.queries);
-        self.gpu.end_label(commands);
-    }
-
-    fn encode_compute(&self, commands: vk::CommandBuffer, pass: &ComputePass) {
-        let label = pass.kernel.label();
-        let pipeline = self.pipeline(pass.kernel.pipeline, label);
-        assert!(pipeline.point == vk::PipelineBindPoint::COMPUTE, "{label}: a raster pipeline in a compute pass");
-        let sets = [self.sets.get(&pass.kernel, &pass.bindings)];
-        let device = &self.gpu.device;
-        // SAFETY: the command buffer is being recorded, outside of a render pass; pipeline, set and arguments are alive.
-        unsafe {
-            device.cmd_bind_pipeline(commands, pipeline.point, pipeline.pipeline);
-            device.cmd_bind_descriptor_sets(commands, pipeline.point, pipeline.layout, 0, &sets, &[]);
-            match pass.groups {
-                Groups::Grid(Grid([x, y, z])) => device.cmd_dispatch(commands, x, y, z),
-                Groups::Indirect { buffer, offset } => {
-                    device.cmd_dispatch_indirect(commands, self.buffer(buffer, label).buffer, offset);
-                }
-            }
-        }
-    }
-
-    fn encode_raster(&self, commands: vk::CommandBuffer, pass: &RasterPass) {
-        let colors: Vec<_> = pass
-            .colors
-            .iter()
-            .map(|&(id, load)| {
-                let value = |color| vk::ClearValue { color: vk::ClearColorValue { float32: color } };
-                self.attachment(id, pass.label, load, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, value)
-            })
-            .collect();
-        let depth = pass.depth.map(|(id, load)| {
-            let value =
-                |depth| vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth, ..Default::default() } };
-            self.attachment(id, pass.label, load, vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL, value)
-        });
-        let targets = pass.colors.iter().map(|(id, _)| id).chain(pass.depth.iter().map(|(id, _)| id));
-        let [width, height] = targets.map(|&id| self.texture(id, pass.label).size).next().unwrap_or([1, 1]);
-        let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
-        if let Some(depth) = &depth {
-            info = info.depth_attachment(depth);
-        }
-        // Upside down, since y points up in the clip space of WGSL and down in Vulkan's.
-        let (width, height) = (width as f32, height as f32);
-        let viewport = vk::Viewport { x: 0.0, y: height, width, height: -height, min_depth: 0.0, max_depth: 1.0 };
-        let device = &self.gpu.device;
-        // SAFETY: the command buffer is being recorded, outside of a render pass; all targets are alive and in the layout
-        // that the barrier has put them into.
-        unsafe {
-            device.cmd_begin_rendering(commands, &info);
-            device.cmd_set_viewport(commands, 0, &[viewport]);
-            device.cmd_set_scissor(commands, 0, &[area]);
-        }
-        for draw in &pass.draws {
-            let label = draw.kernel.label();
-            let pipeline = self.pipeline(draw.kernel.pipeline, label);
-            assert!(pipeline.point == vk::PipelineBindPoint::GRAPHICS, "{label}: a compute pipeline in a raster pass");
-            let sets = [self.sets.get(&draw.kernel, &draw.bindings)];
-            // SAFETY: inside of the render pass; pipeline and set are alive.
-            unsafe {
-                device.cmd_bind_pipeline(commands, pipeline.point, pipeline.pipeline);
-                device.cmd_bind_descriptor_sets(commands, pipeline.point, pipeline.layout, 0, &sets, &[]);
-                device.cmd_draw(commands, draw.vertices, draw.instances, 0, 0);
-            }
-        }
-        // SAFETY: it was begun above.
-        unsafe { device.cmd_end_rendering(commands) };
-    }
-
-    fn attachment<T: Copy>(
-        &self,
-        id: TextureId,
-        label: Label,
-        load: Load<T>,
-        layout: vk::ImageLayout,
-        value: impl Fn(T) -> vk::ClearValue,
-    ) -> vk::RenderingAttachmentInfo<'static> {
-        let info = vk::RenderingAttachmentInfo::default()
-            .image_view(self.texture(id, label).view)
-            .image_layout(layout)
-            .store_op(vk::AttachmentStoreOp::STORE);
-        match load {
-            Load::Keep => info.load_op(vk::AttachmentLoadOp::LOAD),
-            Load::Clear(color) => info.load_op(vk::AttachmentLoadOp::CLEAR).clear_value(value(color)),
-        }
+    /// Names and times a pass.
+    fn pass(&mut self, command: &Command, accesses: &[(Resource, Access)], write: impl FnOnce(&Self)) {
+        let (label, scope): (Label, _) = (command.name(), command.scope());
+        self.gpu.begin_label(self.commands, label, scope.map(|scope| &**scope));
+        let bytes = accesses.iter().map(|&(resource, _)| self.resources.bytes(resource)).sum();
+        let timing = Timing::new(label, scope.cloned(), bytes);
+        self.timer.begin_pass(self.gpu, self.commands, &mut self.recording.queries, timing);
+        write(self);
+        self.timer.end_pass(self.gpu, self.commands, &self.recording.queries);
+        self.gpu.end_label(self.commands);
     }
 }
 

@@ -1,36 +1,62 @@
 //! Words of the contract in words of Vulkan.
 
 use ash::vk;
-use tressfx_core::backend::{Blend, BufferUse, Depth, DepthOrder, Format};
+use tressfx_core::backend::{Blend, BufferUses, Depth, DepthOrder, Format, TextureUses};
 use tressfx_core::hazards::{Access, Layout};
 use tressfx_core::shader::{ShaderSlot, SlotKind, Stages};
 
-pub(crate) fn buffer_usages(usage: BufferUse) -> vk::BufferUsageFlags {
-    let copied = vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST;
-    match usage {
-        BufferUse::Storage => copied | vk::BufferUsageFlags::STORAGE_BUFFER,
-        BufferUse::Uniform => copied | vk::BufferUsageFlags::UNIFORM_BUFFER,
-        BufferUse::Indirect => copied | vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER,
-    }
+pub(crate) fn buffer_usages(uses: BufferUses) -> vk::BufferUsageFlags {
+    use vk::BufferUsageFlags as U;
+    [
+        (BufferUses::STORAGE, U::STORAGE_BUFFER),
+        (BufferUses::UNIFORM, U::UNIFORM_BUFFER),
+        (BufferUses::INDIRECT, U::INDIRECT_BUFFER),
+        (BufferUses::COPY_SOURCE, U::TRANSFER_SRC),
+        (BufferUses::COPY_TARGET, U::TRANSFER_DST),
+    ]
+    .into_iter()
+    .filter(|(each, _)| uses.contains(*each))
+    // Its zeros are copied to it.
+    .fold(U::TRANSFER_DST, |all, (_, usage)| all | usage)
 }
 
-pub(crate) fn texture_format(format: Format) -> vk::Format {
-    match format {
+pub(crate) fn texture_format(format: Format) -> Option<vk::Format> {
+    Some(match format {
         Format::Rgba8 => vk::Format::R8G8B8A8_UNORM,
         Format::Rgba8Srgb => vk::Format::R8G8B8A8_SRGB,
         Format::Bgra8 => vk::Format::B8G8R8A8_UNORM,
         Format::Bgra8Srgb => vk::Format::B8G8R8A8_SRGB,
         Format::Rgba16F => vk::Format::R16G16B16A16_SFLOAT,
+        Format::Rgb10A2 => vk::Format::A2B10G10R10_UNORM_PACK32,
+        Format::R11G11B10F => vk::Format::B10G11R11_UFLOAT_PACK32,
+        Format::R16F => vk::Format::R16_SFLOAT,
+        Format::Rg16F => vk::Format::R16G16_SFLOAT,
+        Format::R32F => vk::Format::R32_SFLOAT,
+        Format::R32Uint => vk::Format::R32_UINT,
         Format::Depth32F => vk::Format::D32_SFLOAT,
-    }
+        _ => return None,
+    })
 }
 
-pub(crate) fn texture_usages(format: Format) -> vk::ImageUsageFlags {
-    let drawn = match format.is_depth() {
-        true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-        false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
-    };
-    drawn | vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST
+pub(crate) fn texture_usages(format: Format, uses: TextureUses) -> vk::ImageUsageFlags {
+    use vk::ImageUsageFlags as U;
+    let target = if format.is_depth() { U::DEPTH_STENCIL_ATTACHMENT } else { U::COLOR_ATTACHMENT };
+    [
+        (TextureUses::TARGET, target),
+        (TextureUses::SAMPLED, U::SAMPLED),
+        (TextureUses::STORAGE, U::STORAGE),
+        (TextureUses::COPY_SOURCE, U::TRANSFER_SRC),
+        (TextureUses::COPY_TARGET, U::TRANSFER_DST),
+    ]
+    .into_iter()
+    .filter(|(each, _)| uses.contains(*each))
+    // Its zeros are copied to it.
+    .fold(U::TRANSFER_DST, |all, (_, usage)| all | usage)
+}
+
+/// Whether a texture is ever seen through a view: copies need none.
+pub(crate) fn has_view(uses: TextureUses) -> bool {
+    [TextureUses::TARGET, TextureUses::SAMPLED, TextureUses::STORAGE].into_iter().any(|each| uses.contains(each))
 }
 
 /// The only level and layer of a texture.
@@ -39,45 +65,67 @@ pub(crate) fn whole(format: Format) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange { aspect_mask: aspect, level_count: 1, layer_count: 1, ..Default::default() }
 }
 
-pub(crate) fn blend_state(blend: Blend) -> vk::PipelineColorBlendAttachmentState {
+pub(crate) fn blend_state(blend: Blend) -> Option<vk::PipelineColorBlendAttachmentState> {
+    use vk::{BlendFactor as F, BlendOp};
     let state = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
-    match blend {
-        Blend::Replace => state,
-        Blend::Over => state
-            .blend_enable(true)
-            .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
-            .color_blend_op(vk::BlendOp::ADD)
-            .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
-            .alpha_blend_op(vk::BlendOp::ADD),
-    }
-}
-
-pub(crate) fn depth_state(depth: Depth) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
-    let state = vk::PipelineDepthStencilStateCreateInfo::default();
-    let compare = match depth {
-        Depth::Off => return state,
-        Depth::TestWrite(DepthOrder::Standard) => vk::CompareOp::LESS_OR_EQUAL,
-        Depth::TestWrite(DepthOrder::Reverse) => vk::CompareOp::GREATER_OR_EQUAL,
+    // Factors of the fragment and of what was there, for colour and for alpha. `MIN` and `MAX` take no factors.
+    let (op, color, alpha) = match blend {
+        Blend::Replace => return Some(state),
+        Blend::Over => (BlendOp::ADD, [F::ONE, F::ONE_MINUS_SRC_ALPHA], [F::ONE, F::ONE_MINUS_SRC_ALPHA]),
+        Blend::Add => (BlendOp::ADD, [F::ONE; 2], [F::ONE; 2]),
+        Blend::Multiply => (BlendOp::ADD, [F::DST_COLOR, F::ZERO], [F::DST_ALPHA, F::ZERO]),
+        Blend::Min => (BlendOp::MIN, [F::ONE; 2], [F::ONE; 2]),
+        Blend::Max => (BlendOp::MAX, [F::ONE; 2], [F::ONE; 2]),
+        _ => return None,
     };
-    state.depth_test_enable(true).depth_write_enable(true).depth_compare_op(compare)
+    Some(
+        state
+            .blend_enable(true)
+            .src_color_blend_factor(color[0])
+            .dst_color_blend_factor(color[1])
+            .color_blend_op(op)
+            .src_alpha_blend_factor(alpha[0])
+            .dst_alpha_blend_factor(alpha[1])
+            .alpha_blend_op(op),
+    )
 }
 
-pub(crate) fn descriptor_type(kind: SlotKind) -> vk::DescriptorType {
-    match kind {
+/// The state of depth, and the format of its target.
+pub(crate) fn depth_state(depth: Depth) -> Option<(vk::PipelineDepthStencilStateCreateInfo<'static>, vk::Format)> {
+    let state = vk::PipelineDepthStencilStateCreateInfo::default();
+    let (order, writes) = match depth {
+        Depth::Off => return Some((state, vk::Format::UNDEFINED)),
+        Depth::Test(order) => (order, false),
+        Depth::TestWrite(order) => (order, true),
+        _ => return None,
+    };
+    let compare = match order {
+        DepthOrder::Standard => vk::CompareOp::LESS_OR_EQUAL,
+        DepthOrder::Reverse => vk::CompareOp::GREATER_OR_EQUAL,
+    };
+    let state = state.depth_test_enable(true).depth_write_enable(writes).depth_compare_op(compare);
+    Some((state, vk::Format::D32_SFLOAT))
+}
+
+pub(crate) fn descriptor_type(kind: SlotKind) -> Option<vk::DescriptorType> {
+    Some(match kind {
         SlotKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
         SlotKind::Read | SlotKind::ReadWrite => vk::DescriptorType::STORAGE_BUFFER,
-        SlotKind::Texture | SlotKind::DepthTexture => vk::DescriptorType::SAMPLED_IMAGE,
-    }
+        SlotKind::Texture | SlotKind::FilteredTexture | SlotKind::UintTexture | SlotKind::DepthTexture => {
+            vk::DescriptorType::SAMPLED_IMAGE
+        }
+        SlotKind::StorageTexture(_) => vk::DescriptorType::STORAGE_IMAGE,
+        SlotKind::Sampler => vk::DescriptorType::SAMPLER,
+        _ => return None,
+    })
 }
 
-pub(crate) fn layout_binding(slot: &ShaderSlot) -> vk::DescriptorSetLayoutBinding<'static> {
-    vk::DescriptorSetLayoutBinding::default()
+pub(crate) fn layout_binding(slot: &ShaderSlot) -> Option<vk::DescriptorSetLayoutBinding<'static>> {
+    let binding = vk::DescriptorSetLayoutBinding::default()
         .binding(slot.binding)
-        .descriptor_type(descriptor_type(slot.kind))
-        .descriptor_count(1)
-        .stage_flags(stages(slot.stages))
+        .descriptor_type(descriptor_type(slot.kind)?)
+        .descriptor_count(1);
+    Some(binding.stage_flags(stages(slot.stages)))
 }
 
 fn stages(stages: Stages) -> vk::ShaderStageFlags {
@@ -87,7 +135,7 @@ fn stages(stages: Stages) -> vk::ShaderStageFlags {
         (Stages::FRAGMENT, vk::ShaderStageFlags::FRAGMENT),
     ]
     .into_iter()
-    .filter(|(stage, _)| stages.has(*stage))
+    .filter(|(stage, _)| stages.intersects(*stage))
     .fold(vk::ShaderStageFlags::empty(), |all, (_, stage)| all | stage)
 }
 
@@ -140,6 +188,7 @@ pub(crate) fn image_layout(layout: Layout, format: Format) -> vk::ImageLayout {
         Layout::Target if format.is_depth() => vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         Layout::Target => vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         Layout::Sampled => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        Layout::Storage => vk::ImageLayout::GENERAL,
         Layout::CopySource => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
         Layout::CopyTarget => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
     }

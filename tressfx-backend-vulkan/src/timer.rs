@@ -2,11 +2,10 @@
 
 use ash::vk;
 use tressfx_core::backend::Timing;
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::Result;
 
 use crate::device::Gpu;
-use crate::error::error;
-use crate::frame::Recording;
+use crate::frames::Recording;
 
 /// Stages whose invocations are counted, in the order in which Vulkan writes them.
 const COUNTED: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFlags::from_raw(
@@ -42,19 +41,21 @@ impl Timer {
     }
 
     /// Makes room for the queries of so many passes.
-    pub(crate) fn begin(
-        &self,
-        gpu: &Gpu,
-        commands: vk::CommandBuffer,
-        queries: &mut Queries,
-        passes: usize,
-    ) -> Result<()> {
+    pub(crate) fn prepare(&self, gpu: &Gpu, queries: &mut Queries, passes: usize) -> Result<()> {
         queries.passes.clear();
         if self.period.is_none() || passes == 0 {
             return Ok(());
         }
         if queries.capacity < passes as u32 {
             queries.grow(gpu, (passes as u32).next_power_of_two())?;
+        }
+        Ok(())
+    }
+
+    /// Before the first pass.
+    pub(crate) fn begin(&self, gpu: &Gpu, commands: vk::CommandBuffer, queries: &Queries, passes: usize) {
+        if self.period.is_none() || passes == 0 {
+            return;
         }
         // SAFETY: the command buffer is being recorded, outside of a render pass; the queries are not in use.
         unsafe {
@@ -63,7 +64,6 @@ impl Timer {
                 gpu.device.cmd_reset_query_pool(commands, queries.statistics, 0, queries.capacity);
             }
         }
-        Ok(())
     }
 
     /// Before the first command of a pass.
@@ -123,12 +123,9 @@ impl Timer {
 
 impl Queries {
     fn grow(&mut self, gpu: &Gpu, capacity: u32) -> Result<()> {
-        let label: Label = "hair.timestamps";
         let times = vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(2 * capacity);
         // SAFETY: the device is alive.
-        let timestamps = unsafe { gpu.device.create_query_pool(&times, None) };
-        let timestamps = timestamps.map_err(|code| error(code, label, 0))?;
-        gpu.name(timestamps, label);
+        let timestamps = gpu.create("hair.timestamps", |device| unsafe { device.create_query_pool(&times, None) })?;
         let mut statistics = vk::QueryPool::null();
         if gpu.enabled.statistics {
             let counts = vk::QueryPoolCreateInfo::default()
@@ -136,12 +133,11 @@ impl Queries {
                 .query_count(capacity)
                 .pipeline_statistics(COUNTED);
             // SAFETY: as above, and the feature is enabled.
-            statistics = unsafe { gpu.device.create_query_pool(&counts, None) }.map_err(|code| {
+            let made = gpu.create("hair.statistics", |device| unsafe { device.create_query_pool(&counts, None) });
+            statistics = made.inspect_err(|_| {
                 // SAFETY: nothing uses it.
                 unsafe { gpu.device.destroy_query_pool(timestamps, None) };
-                error(code, "hair.statistics", 0)
             })?;
-            gpu.name(statistics, "hair.statistics");
         }
         self.destroy(gpu);
         (self.timestamps, self.statistics, self.capacity) = (timestamps, statistics, capacity);

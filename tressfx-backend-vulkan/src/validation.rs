@@ -1,7 +1,7 @@
 //! What the validation layer says.
 
 use std::ffi::{CStr, c_void};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use ash::{ext, vk};
 use tressfx_core::error::{Error, Result};
@@ -34,14 +34,14 @@ pub(crate) fn settings() -> vk::LayerSettingEXT<'static> {
 pub(crate) struct Messages {
     debug: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    /// Where the callback writes to; its address is the callback's.
-    texts: Box<Mutex<Vec<String>>>,
+    /// Where the callback writes to. The callback has its address, which a box that is moved would not promise.
+    texts: Arc<Mutex<Vec<String>>>,
 }
 
 impl Messages {
     pub(crate) fn listen(entry: &ash::Entry, instance: &ash::Instance) -> Result<Self> {
         let debug = ext::debug_utils::Instance::new(entry, instance);
-        let texts = Box::new(Mutex::new(Vec::new()));
+        let texts = Arc::new(Mutex::new(Vec::new()));
         let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(
                 vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
@@ -52,7 +52,7 @@ impl Messages {
                     | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
             )
             .pfn_user_callback(Some(heard))
-            .user_data(std::ptr::from_ref::<Mutex<Vec<String>>>(&texts).cast_mut().cast());
+            .user_data(Arc::as_ptr(&texts).cast_mut().cast());
         // SAFETY: the extension is enabled wherever messages are listened to, and `texts` outlives the messenger.
         let messenger = unsafe { debug.create_debug_utils_messenger(&info, None) };
         let messenger =

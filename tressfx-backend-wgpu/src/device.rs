@@ -1,21 +1,23 @@
 //! Finding an adapter and opening a device.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::future::Future;
+use std::task::{Context, Poll, Waker};
 
 use tressfx_core::backend::Caps;
 use tressfx_core::error::{Error, Result};
+use tressfx_core::pass::Grid;
 use wgpu::{DeviceType, Features, Limits};
 
 /// The adapters of the system, as people name them: `NAME (API, kind, driver)`.
 pub fn adapters() -> Vec<String> {
-    found().iter().map(|adapter| describe(&adapter.get_info())).collect()
+    pollster::block_on(found()).iter().map(|adapter| describe(&adapter.get_info())).collect()
 }
 
-fn found() -> Vec<wgpu::Adapter> {
+async fn found() -> Vec<wgpu::Adapter> {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let backends = descriptor.backends;
     let instance = wgpu::Instance::new(descriptor);
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
+    let mut adapters = instance.enumerate_adapters(backends).await;
     adapters.sort_by_key(|adapter| speed(adapter.get_info().device_type));
     adapters
 }
@@ -37,20 +39,20 @@ fn describe(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// Opens the fastest adapter, or the first whose description contains `wanted`.
-pub(crate) fn open(wanted: Option<&str>) -> Result<(wgpu::Device, wgpu::Queue)> {
-    let adapters = found();
+pub(crate) async fn open(wanted: Option<&str>) -> Result<(wgpu::Device, wgpu::Queue)> {
+    let adapters = found().await;
     let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
     let matches = |name: &str| wanted.is_none_or(|wanted| name.to_lowercase().contains(&wanted.to_lowercase()));
     let index = names.iter().position(|name| matches(name)).ok_or_else(|| none(wanted, &names))?;
     let adapter = &adapters[index];
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("tressfx"),
-        required_features: adapter.features() & Features::TIMESTAMP_QUERY,
+        required_features: adapter.features() & (Features::TIMESTAMP_QUERY | Features::RG11B10UFLOAT_RENDERABLE),
         required_limits: limits(&adapter.limits()),
         ..Default::default()
     };
-    pollster::block_on(adapter.request_device(&descriptor))
-        .map_err(|error| Error::NoAdapter { message: format!("{} could not be opened: {error}", names[index]) })
+    let opened = adapter.request_device(&descriptor).await;
+    opened.map_err(|error| Error::NoAdapter { message: format!("{} could not be opened: {error}", names[index]) })
 }
 
 /// WebGPU's default limits, and more memory where the adapter has it.
@@ -79,26 +81,45 @@ fn none(wanted: Option<&str>, names: &[String]) -> Error {
 /// What the device can do.
 pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     let limits = device.limits();
-    Caps {
-        adapter: describe(&device.adapter_info()),
-        compute: true,
-        raster: true,
-        read_back: true,
-        fragment_writes: true,
-        max_storage_buffers_per_stage: limits.max_storage_buffers_per_shader_stage,
-        max_storage_binding_bytes: limits.max_storage_buffer_binding_size,
-        max_buffer_bytes: limits.max_buffer_size,
-        max_texture_edge: limits.max_texture_dimension_2d,
-        timestamps: device.features().contains(Features::TIMESTAMP_QUERY),
-    }
+    let features = device.features();
+    let mut caps = Caps::webgpu_default();
+    caps.adapter = describe(&device.adapter_info());
+    caps.compute = limits.max_compute_workgroups_per_dimension >= Grid::MAX_GROUPS;
+    caps.fragment_writes = writes_in_fragments(device);
+    caps.r11g11b10_targets = features.contains(Features::RG11B10UFLOAT_RENDERABLE);
+    caps.max_storage_buffers_per_stage = limits.max_storage_buffers_per_shader_stage;
+    caps.max_storage_textures_per_stage = limits.max_storage_textures_per_shader_stage;
+    caps.max_storage_binding_bytes = limits.max_storage_buffer_binding_size;
+    caps.max_uniform_binding_bytes = limits.max_uniform_buffer_binding_size;
+    let alignments = [limits.min_storage_buffer_offset_alignment, limits.min_uniform_buffer_offset_alignment];
+    caps.binding_alignment = alignments.into_iter().max().unwrap_or(1).max(1).into();
+    caps.max_buffer_bytes = limits.max_buffer_size;
+    caps.max_texture_edge = limits.max_texture_dimension_2d;
+    caps.max_color_targets = limits.max_color_attachments;
+    caps.max_group_threads = limits.max_compute_invocations_per_workgroup;
+    caps.max_group_size =
+        [limits.max_compute_workgroup_size_x, limits.max_compute_workgroup_size_y, limits.max_compute_workgroup_size_z];
+    caps.max_group_memory_bytes = limits.max_compute_workgroup_storage_size;
+    caps.timestamps = features.contains(Features::TIMESTAMP_QUERY);
+    caps
 }
 
-/// Filled with the reason once the device is lost.
-pub(crate) fn watch_for_loss(device: &wgpu::Device) -> Arc<Mutex<Option<String>>> {
-    let lost = Arc::new(Mutex::new(None));
-    let reason = lost.clone();
-    device.set_device_lost_callback(move |kind, message| {
-        *reason.lock().unwrap_or_else(PoisonError::into_inner) = Some(format!("{kind:?}: {message}"));
-    });
-    lost
+/// Whether fragment shaders can write. Only adapters say so, and an engine hands over its device alone; so a layout is tried.
+fn writes_in_fragments(device: &wgpu::Device) -> bool {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let entry = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("hair.probe"), entries: &[entry] };
+    drop(device.create_bind_group_layout(&descriptor));
+    // Where the answer is not there at once, the device is a browser's, and they can.
+    let mut caught = std::pin::pin!(scope.pop());
+    !matches!(caught.as_mut().poll(&mut Context::from_waker(Waker::noop())), Poll::Ready(Some(_)))
 }

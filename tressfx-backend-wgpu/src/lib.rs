@@ -4,28 +4,36 @@
 //!
 //! * [`Record::record`] never submits, waits or keeps the encoder.
 //! * Imported buffers and textures are never destroyed here; `destroy` only forgets them.
+//! * The device's callbacks, for its loss and for uncaptured errors, stay the engine's. No rule of the contract that is broken
+//!   becomes an uncaptured error.
 //! * wgpu derives barriers by itself, so the hazards of `tressfx-core` are not asked for.
 //!
 //! It decides nothing about hair and does not know what a window is.
 
 mod device;
+mod error;
+mod label;
+mod limits;
 mod pipeline;
 mod read;
 mod record;
 mod resource;
+mod run;
+mod sets;
+mod staging;
 mod tables;
 mod timer;
+mod uploads;
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
-
+#[cfg(doc)]
+use tressfx_core::backend::Record;
 use tressfx_core::backend::{
-    Backend, BufferDesc, Caps, ComputeDesc, Kernel, Memory, RasterDesc, Record, TextureDesc, Timing,
+    Backend, BufferDesc, Caps, Catalog, ComputeDesc, Memory, RasterDesc, ReadBack, TextureDesc, Timing,
 };
-use tressfx_core::error::{Error, Label, Result};
-use tressfx_core::id::{BufferId, PipelineId, Resource, Slots, TextureId};
-use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::shader::Bindings;
+use tressfx_core::error::Result;
+use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
+use tressfx_core::pass::Ticket;
+use tressfx_core::shader::{Kernel, RasterPipeline};
 
 pub use device::adapters;
 /// The wgpu that this backend is built against.
@@ -36,53 +44,64 @@ pub use wgpu;
 pub struct WgpuBackend {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    caps: Caps,
-    lost: Arc<Mutex<Option<String>>>,
-    buffers: Slots<resource::Buffer>,
-    textures: Slots<resource::Texture>,
-    pipelines: Slots<pipeline::Pipeline>,
-    bind_groups: HashMap<(PipelineId, Bindings), wgpu::BindGroup>,
-    reads: HashMap<Ticket, read::PendingRead>,
+    catalog: Catalog<wgpu::Buffer, resource::Texture, pipeline::Pipeline>,
+    loss: error::Loss,
+    scopes: error::Scopes,
+    bind_groups: sets::BindGroups,
+    uploads: uploads::Belt,
+    reads: read::Reads,
     timer: timer::Timer,
-    memory: Memory,
+    /// Bytes that a raster pass can write for a pixel.
+    target_bytes: u32,
 }
 
 impl WgpuBackend {
     /// A backend that shares an engine's device and queue.
     ///
-    /// Timestamps are used where the device was made with `TIMESTAMP_QUERY`.
+    /// Timestamps are used where the device was made with `TIMESTAMP_QUERY`, targets of
+    /// [`R11G11B10F`](tressfx_core::backend::Format::R11G11B10F) where it was made with `RG11B10UFLOAT_RENDERABLE`.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let lost = device::watch_for_loss(&device);
         Self {
-            caps: device::caps(&device),
+            catalog: Catalog::new(device::caps(&device)),
+            loss: error::Loss::new(&device),
+            scopes: error::Scopes::default(),
+            bind_groups: sets::BindGroups::new(&device),
+            uploads: uploads::Belt::default(),
+            reads: read::Reads::default(),
             timer: timer::Timer::new(&device, &queue),
+            target_bytes: device.limits().max_color_attachment_bytes_per_sample,
             device,
             queue,
-            lost,
-            buffers: Slots::default(),
-            textures: Slots::default(),
-            pipelines: Slots::default(),
-            bind_groups: HashMap::new(),
-            reads: HashMap::new(),
-            memory: Memory::default(),
         }
     }
 
-    /// A backend with a device of its own and no window: the fastest adapter that the system has.
+    /// A backend with a device of its own and no window: on the fastest adapter that the system has, or on the first whose
+    /// name contains `adapter`, in whatever case.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`] with what was tried and what to install.
+    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with what was tried and what to install, or with the adapters that
+    /// there are.
+    pub async fn open(adapter: Option<&str>) -> Result<Self> {
+        let (device, queue) = device::open(adapter).await?;
+        let backend = Self::new(device, queue);
+        backend.loss.watch(&backend.device);
+        Ok(backend)
+    }
+
+    /// As [`open`](Self::open), on the fastest adapter; waits for it. For tools and tests.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
     pub fn headless() -> Result<Self> {
         Self::headless_on(None)
     }
 
-    /// As [`headless`](Self::headless), on the first adapter whose name contains `adapter`, in whatever case.
+    /// As [`open`](Self::open); waits for it. For tools and tests.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`] with the adapters that there are.
+    /// As [`open`](Self::open).
     pub fn headless_on(adapter: Option<&str>) -> Result<Self> {
-        let (device, queue) = device::open(adapter)?;
-        Ok(Self::new(device, queue))
+        pollster::block_on(Self::open(adapter))
     }
 
     /// The device.
@@ -94,37 +113,11 @@ impl WgpuBackend {
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
-
-    fn check_lost(&self) -> Result<()> {
-        match self.lost.lock().unwrap_or_else(std::sync::PoisonError::into_inner).as_ref() {
-            Some(reason) => Err(Error::DeviceLost { reason: reason.clone() }),
-            None => Ok(()),
-        }
-    }
-
-    /// Runs `make` and turns what wgpu complains of into an error.
-    fn guarded<T>(&mut self, label: Label, bytes: u64, make: impl FnOnce(&mut Self) -> T) -> Result<T> {
-        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
-        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
-        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let made = make(self);
-        let validation = pollster::block_on(validation.pop());
-        let internal = pollster::block_on(internal.pop());
-        let memory = pollster::block_on(memory.pop());
-        self.check_lost()?;
-        if memory.is_some() {
-            return Err(Error::OutOfMemory { label, bytes });
-        }
-        match validation.or(internal) {
-            Some(error) => Err(Error::Backend { label, message: error.to_string() }),
-            None => Ok(made),
-        }
-    }
 }
 
 impl Backend for WgpuBackend {
     fn caps(&self) -> &Caps {
-        &self.caps
+        self.catalog.caps()
     }
 
     fn create_buffer(&mut self, desc: &BufferDesc) -> Result<BufferId> {
@@ -139,39 +132,31 @@ impl Backend for WgpuBackend {
         self.make_compute(desc)
     }
 
-    fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
+    fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
         self.make_raster(desc)
     }
 
     fn destroy(&mut self, resource: Resource) {
-        self.forget(resource);
+        self.catalog.destroy(resource);
     }
 
     fn destroy_pipeline(&mut self, pipeline: PipelineId) {
-        self.pipelines.remove(pipeline.0);
-        self.bind_groups.retain(|(of, _), _| *of != pipeline);
+        self.catalog.destroy_pipeline(pipeline);
     }
 
-    fn run(&mut self, list: &PassList) -> Result<()> {
-        self.check_lost()?;
-        self.guarded("run", 0, |backend| {
-            let mut encoder = backend.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            backend.record(&mut encoder, list)?;
-            backend.queue.submit([encoder.finish()]);
-            Ok(())
-        })??;
-        self.wait()
-    }
-
-    fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
         self.take_read(ticket)
     }
 
+    fn give_up(&mut self, ticket: Ticket) {
+        self.reads.give_up(ticket);
+    }
+
     fn timings(&mut self) -> Vec<Timing> {
-        self.timer.collect(&self.device)
+        self.take_timings()
     }
 
     fn memory(&self) -> Memory {
-        self.memory
+        self.catalog.memory()
     }
 }

@@ -1,133 +1,175 @@
 //! Bytes that come back from the GPU.
 
-use std::sync::{Arc, OnceLock};
+use std::collections::{HashMap, HashSet};
 
-use tressfx_core::error::{Error, Result};
-use tressfx_core::id::{BufferId, TextureId};
-use tressfx_core::pass::Ticket;
+use tressfx_core::backend::{Format, ReadBack};
+use tressfx_core::error::Result;
+use tressfx_core::id::TextureId;
+use tressfx_core::pass::{Command, PassList, Ticket};
+use wgpu::{BufferUsages, MapMode, PollType};
 
 use crate::WgpuBackend;
+use crate::error::ignoring;
+use crate::staging::{self, Mapping, Pool, State};
 
-/// A copy on its way to the CPU.
+/// All read-backs that nobody has given up.
+#[derive(Debug, Default)]
+pub(crate) struct Reads {
+    pending: HashMap<Ticket, Pending>,
+    /// They will never come.
+    failed: HashSet<Ticket>,
+    /// Buffers for the next ones.
+    free: Pool,
+}
+
+/// A read-back that is on its way, in a buffer.
 #[derive(Debug)]
-pub(crate) struct PendingRead {
-    copy: Mapped,
+struct Pending {
+    buffer: wgpu::Buffer,
     rows: Rows,
+    state: State,
 }
 
 /// Rows of a copy: WebGPU pads them, the caller gets them tight.
 #[derive(Clone, Copy, Debug)]
-struct Rows {
-    count: u32,
-    bytes: u32,
-    padded: u32,
+pub(crate) struct Rows {
+    count: usize,
+    bytes: usize,
+    padded: usize,
 }
 
-/// A buffer that comes to the CPU by itself once the encoder that fills it was submitted and has run.
-#[derive(Debug)]
-pub(crate) struct Mapped {
-    buffer: wgpu::Buffer,
-    /// Whether it could be mapped; empty until then.
-    mapped: Arc<OnceLock<bool>>,
-}
-
-impl Mapped {
-    pub(crate) fn new(device: &wgpu::Device, bytes: u64) -> Self {
-        let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("hair.read_back"),
-            size: bytes,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        Self { buffer, mapped: Arc::default() }
+impl Rows {
+    fn of_buffer(bytes: u64) -> Self {
+        Self { count: 1, bytes: bytes as usize, padded: bytes as usize }
     }
 
-    pub(crate) fn buffer(&self) -> &wgpu::Buffer {
-        &self.buffer
+    pub(crate) fn of_texture([width, height]: [u32; 2], format: Format) -> Self {
+        let bytes = width as usize * format.bytes() as usize;
+        let padded = bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        Self { count: height as usize, bytes, padded }
     }
 
-    /// After the last command of `encoder` that fills it.
-    pub(crate) fn map_on_submit(&self, encoder: &wgpu::CommandEncoder) {
-        let mapped = self.mapped.clone();
-        encoder.map_buffer_on_submit(&self.buffer, wgpu::MapMode::Read, .., move |result| {
-            let _ = mapped.set(result.is_ok());
-        });
+    /// Bytes of the copy; none is too small for a buffer.
+    pub(crate) fn total(self) -> u64 {
+        (self.count * self.padded).max(4) as u64
     }
 
-    /// The bytes if they are there; never waits.
-    pub(crate) fn bytes(&self, device: &wgpu::Device) -> Option<wgpu::BufferView> {
-        let _ = device.poll(wgpu::PollType::Poll);
-        let mapped = *self.mapped.get()?;
-        mapped.then(|| self.buffer.get_mapped_range(..).ok()).flatten()
-    }
-
-    /// Whether its encoder was thrown away, and with it what would have mapped it.
-    pub(crate) fn is_lost(&self) -> bool {
-        Arc::strong_count(&self.mapped) == 1 && self.mapped.get().is_none()
+    fn tight(self, bytes: &[u8]) -> Vec<u8> {
+        let mut tight = Vec::with_capacity(self.count * self.bytes);
+        for row in bytes.chunks(self.padded.max(1)).take(self.count) {
+            tight.extend_from_slice(&row[..self.bytes]);
+        }
+        tight
     }
 }
 
 impl WgpuBackend {
-    pub(crate) fn encode_read_buffer(
+    /// Buffers for all that a list reads back, in its order.
+    pub(crate) fn prepare_reads(&mut self, list: &PassList) -> Result<Vec<(wgpu::Buffer, Rows)>> {
+        let mut prepared = Vec::new();
+        for command in list.commands() {
+            let rows = match command {
+                Command::ReadBuffer { bytes, .. } => Rows::of_buffer(*bytes),
+                Command::ReadTexture { src, .. } => match self.catalog.texture_desc(*src) {
+                    Some(desc) => Rows::of_texture(desc.size, desc.format),
+                    None => continue,
+                },
+                _ => continue,
+            };
+            let buffer = match self.reads.free.take(rows.total()) {
+                Some(buffer) => buffer,
+                None => self.guarded("hair.read_back", rows.total(), |backend| {
+                    let usage = BufferUsages::MAP_READ | BufferUsages::COPY_DST;
+                    Ok(staging::create(&backend.device, rows.total(), usage, false))
+                })?,
+            };
+            prepared.push((buffer, rows));
+        }
+        Ok(prepared)
+    }
+
+    /// After the copy.
+    pub(crate) fn expect_read(
         &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        src: BufferId,
-        offset: u64,
-        bytes: u64,
+        encoder: &wgpu::CommandEncoder,
+        (buffer, rows): (wgpu::Buffer, Rows),
         ticket: Ticket,
     ) {
-        let copy = Mapped::new(&self.device, bytes.max(4));
-        encoder.copy_buffer_to_buffer(self.buffer(src, "read buffer"), offset, copy.buffer(), 0, bytes);
-        copy.map_on_submit(encoder);
-        let rows = Rows { count: 1, bytes: bytes as u32, padded: bytes as u32 };
-        self.reads.insert(ticket, PendingRead { copy, rows });
+        let state = staging::map_on_submit(encoder, &buffer, MapMode::Read, rows.total());
+        self.reads.failed.remove(&ticket);
+        self.reads.pending.insert(ticket, Pending { buffer, rows, state });
     }
 
-    pub(crate) fn encode_read_texture(&mut self, encoder: &mut wgpu::CommandEncoder, src: TextureId, ticket: Ticket) {
-        let source = self.texture(src, "read texture");
-        let size = source.texture.size();
-        let texel =
-            source.texture.format().block_copy_size(None).unwrap_or_else(|| panic!("{}: not readable", source.label));
-        let bytes = size.width * texel;
-        let padded = bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let copy = Mapped::new(&self.device, u64::from(padded) * u64::from(size.height));
+    pub(crate) fn encode_read_texture(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        src: TextureId,
+        (buffer, rows): &(wgpu::Buffer, Rows),
+    ) {
+        let texture = &self.catalog.texture(src).texture;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(rows.padded as u32), rows_per_image: None };
         encoder.copy_texture_to_buffer(
-            source.texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: copy.buffer(),
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-            },
-            wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer, layout },
+            wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 },
         );
-        copy.map_on_submit(encoder);
-        let rows = Rows { count: size.height, bytes, padded };
-        self.reads.insert(ticket, PendingRead { copy, rows });
     }
 
-    pub(crate) fn take_read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
-        let pending = self.reads.get(&ticket)?;
-        let rows = pending.rows;
-        let bytes = pending.copy.bytes(&self.device)?;
-        let tight = bytes
-            .chunks(rows.padded.max(1) as usize)
-            .take(rows.count as usize)
-            .flat_map(|row| &row[..rows.bytes as usize])
-            .copied()
-            .collect();
-        drop(bytes);
-        self.reads.remove(&ticket);
-        Some(tight)
+    pub(crate) fn take_read(&mut self, ticket: Ticket) -> ReadBack {
+        let Some(pending) = self.reads.pending.get(&ticket) else {
+            return if self.reads.failed.contains(&ticket) { ReadBack::Failed } else { ReadBack::Unknown };
+        };
+        if pending.state.get() == Mapping::Waiting && self.loss.poll(&self.device, PollType::Poll).is_err() {
+            return self.reads.fail(ticket);
+        }
+        match pending.state.get() {
+            Mapping::Waiting => ReadBack::Pending,
+            Mapping::Done => self.bytes_of(ticket),
+            Mapping::Failed => {
+                self.loss.note();
+                self.reads.fail(ticket)
+            }
+            Mapping::Discarded => self.reads.fail(ticket),
+        }
     }
 
-    /// Drops the read-backs of encoders that were thrown away.
-    pub(crate) fn forget_lost_reads(&mut self) {
-        self.reads.retain(|_, read| !read.copy.is_lost());
+    /// The bytes of a read-back that is mapped.
+    fn bytes_of(&mut self, ticket: Ticket) -> ReadBack {
+        let Some(Pending { buffer, rows, .. }) = self.reads.pending.remove(&ticket) else { return ReadBack::Unknown };
+        let bytes = ignoring(&self.device, || {
+            let bytes = buffer.get_mapped_range(..rows.total()).map(|mapped| rows.tight(&mapped));
+            buffer.unmap();
+            bytes
+        });
+        match bytes {
+            Ok(bytes) => {
+                self.reads.free.give(buffer);
+                ReadBack::Ready(bytes)
+            }
+            Err(_) => self.reads.fail(ticket),
+        }
+    }
+}
+
+impl Reads {
+    fn fail(&mut self, ticket: Ticket) -> ReadBack {
+        self.pending.remove(&ticket);
+        self.failed.insert(ticket);
+        ReadBack::Failed
     }
 
-    /// Waits for everything that was submitted.
-    pub(crate) fn wait(&mut self) -> Result<()> {
-        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
-        self.check_lost()?;
-        waited.map(|_| ()).map_err(|error| Error::DeviceLost { reason: error.to_string() })
+    pub(crate) fn give_up(&mut self, ticket: Ticket) {
+        self.pending.remove(&ticket);
+        self.failed.remove(&ticket);
+    }
+
+    /// Takes the buffers of encoders that were thrown away.
+    pub(crate) fn collect_discarded(&mut self) {
+        let discarded = self.pending.extract_if(|_, pending| pending.state.get() == Mapping::Discarded);
+        for (ticket, Pending { buffer, .. }) in discarded {
+            self.failed.insert(ticket);
+            self.free.give(buffer);
+        }
     }
 }

@@ -1,112 +1,139 @@
 //! Commands of a list become commands of a wgpu encoder.
 
+use std::vec::IntoIter;
+
 use tressfx_core::backend::Record;
-use tressfx_core::check::check;
 use tressfx_core::error::Result;
-use tressfx_core::pass::{Command, ComputePass, Grid, Groups, Load, PassList, RasterPass};
-use wgpu::util::DeviceExt;
+use tressfx_core::pass::{Command, ComputePass, Count, Grid, Groups, Load, PassList, RasterPass};
 
 use crate::WgpuBackend;
+use crate::label;
 use crate::pipeline::Stage;
+use crate::read::Rows;
 use crate::timer::Frame;
+use crate::uploads::Uploads;
+
+/// All that can fail to be made: it is there before the first command is written.
+struct Prepared {
+    uploads: Uploads,
+    frame: Option<Frame>,
+    /// In the order of the list.
+    bind_groups: IntoIter<wgpu::BindGroup>,
+    reads: IntoIter<(wgpu::Buffer, Rows)>,
+}
 
 impl Record for WgpuBackend {
     type Encoder = wgpu::CommandEncoder;
 
+    /// The encoder is one of this backend's device.
     fn record(&mut self, encoder: &mut wgpu::CommandEncoder, list: &PassList) -> Result<()> {
-        check(list);
-        self.check_lost()?;
-        self.forget_lost_reads();
-        // Uploads take effect in the order of the list, so they are copies in the encoder and not writes of the queue.
-        let uploads = (!list.bytes.is_empty()).then(|| {
-            self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("hair.uploads"),
-                contents: &list.bytes,
-                usage: wgpu::BufferUsages::COPY_SRC,
-            })
-        });
-        let mut frame = self.timer.begin(&self.device, list, |resource| self.bytes(resource));
-        for command in &list.commands {
-            self.encode(encoder, command, uploads.as_ref(), frame.as_mut());
+        self.sweep();
+        self.catalog.check(list)?;
+        self.check_limits(list)?;
+        self.check()?;
+        let mut prepared = self.prepare(list)?;
+        let mut groups = label::Groups::default();
+        for command in list.commands() {
+            if command.is_pass() {
+                groups.enter(encoder, command.scope());
+            }
+            self.encode(encoder, command, &mut prepared);
         }
-        if let Some(frame) = frame {
-            self.timer.end(encoder, frame);
+        groups.enter(encoder, None);
+        if let Some(frame) = prepared.frame {
+            self.timer.end(&self.device, encoder, frame);
         }
+        self.uploads.give_back(encoder, prepared.uploads);
         Ok(())
     }
 }
 
 impl WgpuBackend {
-    fn encode(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        command: &Command,
-        uploads: Option<&wgpu::Buffer>,
-        frame: Option<&mut Frame>,
-    ) {
+    fn prepare(&mut self, list: &PassList) -> Result<Prepared> {
+        self.reads.collect_discarded();
+        Ok(Prepared {
+            uploads: self.fill_uploads(list.bytes())?,
+            frame: self.begin_timing(list)?,
+            bind_groups: self.prepare_bind_groups(list)?.into_iter(),
+            reads: self.prepare_reads(list)?.into_iter(),
+        })
+    }
+
+    fn encode(&mut self, encoder: &mut wgpu::CommandEncoder, command: &Command, prepared: &mut Prepared) {
         match command {
             Command::Upload { dst, offset, data } => {
-                let Some(uploads) = uploads.filter(|_| !data.is_empty()) else { return };
-                let dst = self.buffer(*dst, "upload");
-                encoder.copy_buffer_to_buffer(uploads, data.start as u64, dst, *offset, data.len() as u64);
+                prepared.uploads.copy(encoder, data, self.catalog.buffer(*dst), *offset);
             }
             Command::Clear { dst, offset, bytes } => {
-                encoder.clear_buffer(self.buffer(*dst, "clear"), *offset, Some(*bytes));
+                encoder.clear_buffer(self.catalog.buffer(*dst), *offset, Some(*bytes));
             }
             Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
-                let (src, dst) = (self.buffer(*src, "copy"), self.buffer(*dst, "copy"));
+                let (src, dst) = (self.catalog.buffer(*src), self.catalog.buffer(*dst));
                 encoder.copy_buffer_to_buffer(src, *src_offset, dst, *dst_offset, *bytes);
             }
-            Command::Compute(pass) => self.encode_compute(encoder, pass, frame),
-            Command::Raster(pass) => self.encode_raster(encoder, pass, frame),
-            Command::ReadBuffer { src, offset, bytes, ticket } => {
-                self.encode_read_buffer(encoder, *src, *offset, *bytes, *ticket);
+            Command::CopyToTexture { src, offset, row_bytes, dst } => {
+                let (buffer, texture) = (self.catalog.buffer(*src), &self.catalog.texture(*dst).texture);
+                let layout = wgpu::TexelCopyBufferLayout {
+                    offset: *offset,
+                    bytes_per_row: Some(*row_bytes),
+                    rows_per_image: None,
+                };
+                encoder.copy_buffer_to_texture(
+                    wgpu::TexelCopyBufferInfo { buffer, layout },
+                    texture.as_image_copy(),
+                    wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 },
+                );
             }
-            Command::ReadTexture { src, ticket } => self.encode_read_texture(encoder, *src, *ticket),
+            Command::Compute(pass) => self.encode_compute(encoder, pass, prepared),
+            Command::Raster(pass) => self.encode_raster(encoder, pass, prepared),
+            Command::ReadBuffer { src, offset, bytes, ticket } => {
+                let Some(read) = prepared.reads.next() else { return };
+                encoder.copy_buffer_to_buffer(self.catalog.buffer(*src), *offset, &read.0, 0, *bytes);
+                self.expect_read(encoder, read, *ticket);
+            }
+            Command::ReadTexture { src, ticket } => {
+                let Some(read) = prepared.reads.next() else { return };
+                self.encode_read_texture(encoder, *src, &read);
+                self.expect_read(encoder, read, *ticket);
+            }
+            _ => unreachable!("limits.rs refuses what is not known here"),
         }
     }
 
-    fn encode_compute(&mut self, encoder: &mut wgpu::CommandEncoder, pass: &ComputePass, frame: Option<&mut Frame>) {
-        let label = pass.kernel.label();
-        self.prepare_bind_group(&pass.kernel, &pass.bindings);
-        let Stage::Compute(pipeline) = &self.pipeline(pass.kernel.pipeline, label).stage else {
-            panic!("{label}: a raster pipeline in a compute pass");
-        };
+    fn encode_compute(&self, encoder: &mut wgpu::CommandEncoder, pass: &ComputePass, prepared: &mut Prepared) {
         let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(label),
-            timestamp_writes: frame.map(Frame::compute_writes),
+            label: Some(pass.kernel.label()),
+            timestamp_writes: prepared.frame.as_mut().map(Frame::compute_writes),
         });
+        let Stage::Compute(pipeline) = &self.catalog.pipeline(pass.kernel.pipeline).stage else { return };
         compute.set_pipeline(pipeline);
-        compute.set_bind_group(0, self.bind_group(&pass.kernel, &pass.bindings), &[]);
+        compute.set_bind_group(0, prepared.bind_groups.next().as_ref(), &[]);
         match pass.groups {
             Groups::Grid(Grid([x, y, z])) => compute.dispatch_workgroups(x, y, z),
             Groups::Indirect { buffer, offset } => {
-                compute.dispatch_workgroups_indirect(self.buffer(buffer, label), offset);
+                compute.dispatch_workgroups_indirect(self.catalog.buffer(buffer), offset);
             }
         }
     }
 
-    fn encode_raster(&mut self, encoder: &mut wgpu::CommandEncoder, pass: &RasterPass, frame: Option<&mut Frame>) {
-        for draw in &pass.draws {
-            self.prepare_bind_group(&draw.kernel, &draw.bindings);
-        }
-        let colors: Vec<_> = pass
-            .colors
-            .iter()
+    fn encode_raster(&self, encoder: &mut wgpu::CommandEncoder, pass: &RasterPass, prepared: &mut Prepared) {
+        let color = |[r, g, b, a]: [f32; 4]| {
+            let [r, g, b, a] = [r, g, b, a].map(f64::from);
+            wgpu::Color { r, g, b, a }
+        };
+        let targets = pass.colors.iter();
+        let colors: Vec<_> = targets
             .map(|&(texture, load)| {
                 Some(wgpu::RenderPassColorAttachment {
-                    view: &self.texture(texture, pass.label).view,
+                    view: &self.catalog.texture(texture).view,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: operations(load, |[r, g, b, a]| {
-                        let [r, g, b, a] = [r, g, b, a].map(f64::from);
-                        wgpu::Color { r, g, b, a }
-                    }),
+                    ops: operations(load, color),
                 })
             })
             .collect();
         let depth = pass.depth.map(|(texture, load)| wgpu::RenderPassDepthStencilAttachment {
-            view: &self.texture(texture, pass.label).view,
+            view: &self.catalog.texture(texture).view,
             depth_ops: Some(operations(load, |depth| depth)),
             stencil_ops: None,
         });
@@ -114,18 +141,23 @@ impl WgpuBackend {
             label: Some(pass.label),
             color_attachments: &colors,
             depth_stencil_attachment: depth,
-            timestamp_writes: frame.map(Frame::raster_writes),
+            timestamp_writes: prepared.frame.as_mut().map(Frame::raster_writes),
             occlusion_query_set: None,
             multiview_mask: None,
         });
+        if let Some(viewport) = pass.viewport {
+            let ([x, y], [width, height]) = (viewport.origin, viewport.size);
+            raster.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
+            raster.set_scissor_rect(x, y, width, height);
+        }
         for draw in &pass.draws {
-            let label = draw.kernel.label();
-            let Stage::Raster(pipeline) = &self.pipeline(draw.kernel.pipeline, label).stage else {
-                panic!("{label}: a compute pipeline in a raster pass");
-            };
+            let Stage::Raster(pipeline) = &self.catalog.pipeline(draw.pipeline.pipeline).stage else { return };
             raster.set_pipeline(pipeline);
-            raster.set_bind_group(0, self.bind_group(&draw.kernel, &draw.bindings), &[]);
-            raster.draw(0..draw.vertices, 0..draw.instances);
+            raster.set_bind_group(0, prepared.bind_groups.next().as_ref(), &[]);
+            match draw.count {
+                Count::Direct { vertices, instances } => raster.draw(0..vertices, 0..instances),
+                Count::Indirect { buffer, offset } => raster.draw_indirect(self.catalog.buffer(buffer), offset),
+            }
         }
     }
 }

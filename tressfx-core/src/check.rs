@@ -50,6 +50,9 @@ impl Known<'_> {
                 if data.start > data.end || data.end > uploaded {
                     return Err(format!("bytes {data:?} of a list that holds {uploaded}"));
                 }
+                if data.start % 4 != 0 {
+                    return Err(format!("bytes {data:?} do not begin at a multiple of 4"));
+                }
                 self.range(*dst, *offset, data.len() as u64, BufferUses::COPY_TARGET)
             }
             Command::Clear { dst, offset, bytes } => self.range(*dst, *offset, *bytes, BufferUses::COPY_TARGET),

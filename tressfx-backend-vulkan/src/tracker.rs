@@ -1,0 +1,79 @@
+//! What the next command has to wait for.
+
+use ash::vk;
+use tressfx_core::hazards::{Access, Hazards};
+use tressfx_core::id::Resource;
+
+use crate::Resources;
+use crate::barrier::Barrier;
+use crate::device::Gpu;
+use crate::resource::Owner;
+use crate::tables::scope;
+
+/// The state of all resources, as of the newest recording.
+#[derive(Debug, Default)]
+pub(crate) struct Tracker {
+    pub(crate) hazards: Hazards,
+    /// Made, and not filled with zeros yet.
+    pub(crate) not_zeroed: Vec<Resource>,
+    pub(crate) barrier: Barrier,
+    /// Imported resources that the list under way has touched.
+    borrowed: Vec<Resource>,
+    /// Barriers that were recorded.
+    pub(crate) barriers: u64,
+}
+
+impl Tracker {
+    /// Adds what has to be waited for before `resource` is used so.
+    pub(crate) fn wait_for(&mut self, resources: &Resources, resource: Resource, access: Access) {
+        let wait = self.hazards.touch(resource, access);
+        let first = !self.borrowed.contains(&resource);
+        match resource {
+            Resource::Buffer(id) => match &resources.buffer(id).owner {
+                Owner::Engine { found, .. } if first => {
+                    self.borrowed.push(resource);
+                    self.barrier.buffer((found.stage, found.access), scope(access, None));
+                }
+                _ => wait.iter().for_each(|wait| {
+                    self.barrier.buffer(scope(wait.before, None), scope(wait.after, None));
+                }),
+            },
+            Resource::Texture(id) => {
+                let texture = resources.texture(id);
+                match &texture.owner {
+                    Owner::Engine { found, .. } if first => {
+                        self.borrowed.push(resource);
+                        self.barrier.acquire(texture, found, access);
+                    }
+                    _ => wait.iter().for_each(|wait| self.barrier.texture(texture, wait.before, wait.after)),
+                }
+            }
+        }
+    }
+
+    /// Gives what was borrowed back, in the use that was promised.
+    pub(crate) fn give_back(&mut self, gpu: &Gpu, resources: &Resources, commands: vk::CommandBuffer) {
+        for resource in std::mem::take(&mut self.borrowed) {
+            let before = self.hazards.release(resource);
+            match resource {
+                Resource::Buffer(id) => {
+                    if let Owner::Engine { left, .. } = &resources.buffer(id).owner {
+                        self.barrier.buffer(scope(before, None), (left.stage, left.access));
+                    }
+                }
+                Resource::Texture(id) => {
+                    let texture = resources.texture(id);
+                    if let Owner::Engine { left, .. } = &texture.owner {
+                        self.barrier.release(texture, before, left);
+                    }
+                }
+            }
+        }
+        self.write(gpu, commands);
+    }
+
+    /// Writes what was added since the last barrier.
+    pub(crate) fn write(&mut self, gpu: &Gpu, commands: vk::CommandBuffer) {
+        self.barriers += u64::from(self.barrier.record(gpu, commands));
+    }
+}
