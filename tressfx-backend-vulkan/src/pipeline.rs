@@ -4,8 +4,7 @@ use ash::vk;
 use tressfx_core::backend::{ComputeDesc, Kernel, Need, RasterDesc};
 use tressfx_core::error::{Label, Result};
 use tressfx_core::id::PipelineId;
-use tressfx_core::naga::ShaderStage;
-use tressfx_core::shader::{Shader, Stages};
+use tressfx_core::shader::{Shader, ShaderStage, Stages};
 
 use crate::VulkanBackend;
 use crate::device::Gpu;

@@ -20,5 +20,8 @@ pub mod strands;
 pub mod view;
 
 pub use error::{Error, Result};
-/// The shader compiler whose modules a [`shader::Shader`] holds.
+/// The vectors of the interface.
+pub use glam;
+/// The shader compiler, for backends that take its modules.
+#[cfg(feature = "naga-ir")]
 pub use naga;

@@ -10,7 +10,7 @@ use crate::error::{Label, Result};
 use crate::hazards::Hazards;
 use crate::id::{BufferId, PipelineId, Resource, Slots, TextureId};
 use crate::pass::{Command, PassList, Ticket};
-use crate::shader::{Shader, SlotKind, Stages};
+use crate::shader::{Shader, ShaderStage, SlotKind, Stages};
 
 /// Accepts what a device with its caps would accept, runs nothing.
 #[derive(Debug)]
@@ -92,15 +92,15 @@ impl Backend for NullBackend {
     }
 
     fn create_compute(&mut self, desc: &ComputeDesc) -> Result<Kernel> {
-        desc.shader.entry_point(naga::ShaderStage::Compute)?;
+        desc.shader.entry_point(ShaderStage::Compute)?;
         let needs = [Need::Compute, Need::StorageBuffers(desc.shader.storage_buffers())];
         self.caps.check(desc.shader.label, &needs)?;
         Ok(self.kernel(&desc.shader))
     }
 
     fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
-        desc.shader.entry_point(naga::ShaderStage::Vertex)?;
-        desc.shader.entry_point(naga::ShaderStage::Fragment)?;
+        desc.shader.entry_point(ShaderStage::Vertex)?;
+        desc.shader.entry_point(ShaderStage::Fragment)?;
         self.caps.check(desc.shader.label, &[Need::Raster, Need::StorageBuffers(desc.shader.storage_buffers())])?;
         if desc.shader.slots.iter().any(|slot| slot.kind == SlotKind::ReadWrite && slot.stages.has(Stages::FRAGMENT)) {
             self.caps.check(desc.shader.label, &[Need::FragmentWrites])?;
