@@ -24,8 +24,8 @@ fn main() -> Result<()> {
 
     // Clones of device and queue are the same device and queue. Textures stay the engine's.
     let mut gpu = WgpuBackend::new(engine.device.clone(), engine.queue.clone());
-    let color = gpu.import_texture("engine.light", engine.light.clone());
-    let depth = gpu.import_texture("engine.depth", engine.depth.clone());
+    let color = gpu.import_texture("engine.light", engine.light.clone())?;
+    let depth = gpu.import_texture("engine.depth", engine.depth.clone())?;
     let mut hair = Hair::new(&mut gpu, &args.groom, &stage.view, Format::Rgba16F, Targets { color, depth })?;
 
     for frame in 1..=args.frames {

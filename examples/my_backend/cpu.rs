@@ -1,145 +1,130 @@
-//! Buffers on the CPU, and what a list does with them.
+//! Buffers and textures on the CPU, and what a list does with them.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use tressfx_core::backend::{
-    Backend, BufferDesc, Caps, ComputeDesc, Kernel, Memory, Need, RasterDesc, Record, TextureDesc, Timing,
+    Backend, BufferDesc, Caps, Catalog, ComputeDesc, Memory, RasterDesc, ReadBack, Record, Run, TextureDesc, Timing,
 };
-use tressfx_core::check::check;
-use tressfx_core::error::{Error, Result};
-use tressfx_core::hazards::accesses;
-use tressfx_core::id::{BufferId, PipelineId, Resource, Slots, TextureId};
+use tressfx_core::error::{Error, Label, Result};
+use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
 use tressfx_core::pass::{Command, PassList, Ticket};
+use tressfx_core::shader::{Kernel, RasterPipeline};
 
 /// A backend that moves bytes and runs no kernel.
 #[derive(Debug)]
 pub(crate) struct CpuBackend {
-    caps: Caps,
-    buffers: Slots<Vec<u8>>,
-    textures: Slots<TextureDesc>,
+    /// Descriptions, ids, rules and the count of memory are core's; the backend keeps its own things beside them. There are no
+    /// pipelines, so nothing is kept of them.
+    catalog: Catalog<Vec<u8>, Vec<u8>, ()>,
     reads: HashMap<Ticket, Vec<u8>>,
-    memory: Memory,
 }
 
 impl CpuBackend {
     /// An empty one.
     pub(crate) fn new() -> Self {
-        Self {
-            // The caps are the promise: what they say no to is never asked for, by the library nor by the suite.
-            caps: Caps {
-                adapter: String::from("the CPU, buffers alone"),
-                compute: false,
-                raster: false,
-                read_back: true,
-                fragment_writes: false,
-                ..Caps::webgpu_default()
-            },
-            buffers: Slots::default(),
-            textures: Slots::default(),
-            reads: HashMap::new(),
-            memory: Memory::default(),
-        }
+        // The caps are the promise: what they say no to is refused by core, and never asked for by the library or the suite.
+        let mut caps = Caps::webgpu_default();
+        caps.adapter = String::from("the CPU, without passes");
+        (caps.compute, caps.raster, caps.fragment_writes) = (false, false, false);
+        Self { catalog: Catalog::new(caps), reads: HashMap::new() }
     }
 
-    fn buffer(&self, id: BufferId, range: Range<u64>, what: &str) -> &[u8] {
-        &self.buffers.expect(id.0, what)[range.start as usize..range.end as usize]
+    fn part(&self, id: BufferId, offset: u64, bytes: u64) -> &[u8] {
+        &self.catalog.buffer(id)[offset as usize..(offset + bytes) as usize]
     }
 
-    fn buffer_mut(&mut self, id: BufferId, range: Range<u64>, what: &str) -> &mut [u8] {
-        // An id that outlived its buffer is a mistake of the program: `expect` says so, by the name of the command.
-        self.buffers.expect(id.0, what);
-        let bytes = self.buffers.get_mut(id.0).expect("it was just there");
-        &mut bytes[range.start as usize..range.end as usize]
+    fn part_mut(&mut self, id: BufferId, offset: u64, bytes: u64) -> &mut [u8] {
+        &mut self.catalog.buffer_mut(id)[offset as usize..(offset + bytes) as usize]
     }
 
-    /// All that a command names must be alive, before anything of the list takes effect.
-    fn assert_alive(&self, command: &Command) {
-        for (resource, _) in accesses(command) {
-            match resource {
-                Resource::Buffer(BufferId(slot)) => drop(self.buffers.expect(slot, "record")),
-                Resource::Texture(TextureId(slot)) => drop(self.textures.expect(slot, "record")),
-            }
-        }
+    /// Rows of a buffer, `row_bytes` apart, become a texture.
+    fn copy_to_texture(&mut self, src: BufferId, offset: u64, row_bytes: u32, dst: TextureId) {
+        let width = self.catalog.texture_desc(dst).map_or(0, |desc| desc.size[0] * desc.format.bytes());
+        let rows = self.catalog.buffer(src)[offset as usize..].chunks(row_bytes as usize);
+        let height = self.catalog.texture(dst).len() / width as usize;
+        let texels = rows.take(height).flat_map(|row| &row[..width as usize]).copied().collect();
+        *self.catalog.texture_mut(dst) = texels;
     }
 
-    fn execute(&mut self, command: &Command, bytes: &[u8]) -> Result<()> {
+    /// A command that was checked: what it names is there, and its ranges lie within.
+    fn execute(&mut self, command: &Command, uploads: &[u8]) -> Result<()> {
         match command {
             Command::Upload { dst, offset, data } => {
-                let data = &bytes[data.clone()];
-                self.buffer_mut(*dst, *offset..*offset + data.len() as u64, "upload").copy_from_slice(data);
+                self.part_mut(*dst, *offset, data.len() as u64).copy_from_slice(&uploads[data.clone()]);
             }
-            Command::Clear { dst, offset, bytes } => {
-                self.buffer_mut(*dst, *offset..*offset + *bytes, "clear").fill(0);
-            }
+            Command::Clear { dst, offset, bytes } => self.part_mut(*dst, *offset, *bytes).fill(0),
             Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
-                let data = self.buffer(*src, *src_offset..*src_offset + *bytes, "copy").to_vec();
-                self.buffer_mut(*dst, *dst_offset..*dst_offset + *bytes, "copy").copy_from_slice(&data);
+                let data = self.part(*src, *src_offset, *bytes).to_vec();
+                self.part_mut(*dst, *dst_offset, *bytes).copy_from_slice(&data);
+            }
+            Command::CopyToTexture { src, offset, row_bytes, dst } => {
+                self.copy_to_texture(*src, *offset, *row_bytes, *dst);
             }
             Command::ReadBuffer { src, offset, bytes, ticket } => {
-                let data = self.buffer(*src, *offset..*offset + *bytes, "read buffer").to_vec();
+                let data = self.part(*src, *offset, *bytes).to_vec();
                 self.reads.insert(*ticket, data);
             }
-            // Nobody can have drawn to it, so it still begins as zeros.
             Command::ReadTexture { src, ticket } => {
-                let bytes = self.textures.expect(src.0, "read texture").bytes();
-                self.reads.insert(*ticket, vec![0; bytes as usize]);
+                let data = self.catalog.texture(*src).clone();
+                self.reads.insert(*ticket, data);
             }
-            Command::Compute(pass) => self.caps.check(pass.kernel.label(), &[Need::Compute])?,
-            Command::Raster(pass) => self.caps.check(pass.label, &[Need::Raster])?,
+            // Passes name pipelines, and there are none. The contract may grow by commands that are not known here.
+            other => return Err(Error::rule(other.name(), "this backend does not know the command")),
         }
         Ok(())
     }
 }
 
+/// So many zeros, if there is memory for them.
+fn zeros(label: Label, bytes: u64) -> Result<Vec<u8>> {
+    let mut zeros = Vec::new();
+    zeros.try_reserve_exact(bytes as usize).map_err(|_| Error::OutOfMemory { label, bytes })?;
+    zeros.resize(bytes as usize, 0);
+    Ok(zeros)
+}
+
 impl Backend for CpuBackend {
     fn caps(&self) -> &Caps {
-        &self.caps
+        self.catalog.caps()
     }
 
     fn create_buffer(&mut self, desc: &BufferDesc) -> Result<BufferId> {
-        self.caps.check(desc.label, &[Need::StorageBindingBytes(desc.bytes)])?;
-        let mut bytes = Vec::new();
-        let out_of_memory = |_| Error::OutOfMemory { label: desc.label, bytes: desc.bytes };
-        bytes.try_reserve_exact(desc.bytes as usize).map_err(out_of_memory)?;
-        bytes.resize(desc.bytes as usize, 0);
-        self.memory.add(desc.bytes);
-        Ok(self.buffers.insert(bytes).into())
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_buffer(desc, zeros(desc.label, desc.bytes)?))
     }
 
     fn create_texture(&mut self, desc: &TextureDesc) -> Result<TextureId> {
-        self.caps.check(desc.label, &[Need::TextureEdge(desc.size[0].max(desc.size[1]))])?;
-        self.memory.add(desc.bytes());
-        Ok(self.textures.insert(*desc).into())
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_texture(desc, zeros(desc.label, desc.bytes())?))
     }
 
     fn create_compute(&mut self, desc: &ComputeDesc) -> Result<Kernel> {
-        self.caps.check(desc.shader.label, &[Need::Compute])?;
-        unreachable!("the caps say no")
+        // Here a kernel would be compiled. The caps have no compute passes, so core refuses every one.
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_compute(desc, ()))
     }
 
-    fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
-        self.caps.check(desc.shader.label, &[Need::Raster])?;
-        unreachable!("the caps say no")
+    fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_raster(desc, ()))
     }
 
     fn destroy(&mut self, resource: Resource) {
-        // Nothing is in flight: a CPU has finished when `run` returns.
-        let bytes = match resource {
-            Resource::Buffer(BufferId(slot)) => self.buffers.remove(slot).map(|bytes| bytes.len() as u64),
-            Resource::Texture(TextureId(slot)) => self.textures.remove(slot).map(|desc| desc.bytes()),
-        };
-        self.memory.remove(bytes.unwrap_or(0));
+        // Lists that were begun before may still name it: it is freed by a later sweep.
+        self.catalog.destroy(resource);
     }
 
-    fn destroy_pipeline(&mut self, _pipeline: PipelineId) {}
-
-    fn run(&mut self, list: &PassList) -> Result<()> {
-        self.record(&mut (), list)
+    fn destroy_pipeline(&mut self, pipeline: PipelineId) {
+        self.catalog.destroy_pipeline(pipeline);
     }
 
-    fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
-        self.reads.remove(&ticket)
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
+        // Nothing is ever pending: a CPU has finished when `run` returns.
+        self.reads.remove(&ticket).map_or(ReadBack::Unknown, ReadBack::Ready)
+    }
+
+    fn give_up(&mut self, ticket: Ticket) {
+        self.reads.remove(&ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {
@@ -147,7 +132,7 @@ impl Backend for CpuBackend {
     }
 
     fn memory(&self) -> Memory {
-        self.memory
+        self.catalog.memory()
     }
 }
 
@@ -155,9 +140,16 @@ impl Record for CpuBackend {
     type Encoder = ();
 
     fn record(&mut self, _encoder: &mut (), list: &PassList) -> Result<()> {
-        // The rules of a list are checked by core, so that no backend has to.
-        check(list);
-        list.commands.iter().for_each(|command| self.assert_alive(command));
-        list.commands.iter().try_for_each(|command| self.execute(command, &list.bytes))
+        // What no list can name any more goes; a graphics API would have to wait for frames in flight as well.
+        drop(self.catalog.sweep());
+        // All rules are held by core before the first command takes effect. After it, look-ups cannot fail.
+        self.catalog.check(list)?;
+        list.commands().iter().try_for_each(|command| self.execute(command, list.bytes()))
+    }
+}
+
+impl Run for CpuBackend {
+    fn run(&mut self, list: &PassList) -> Result<()> {
+        self.record(&mut (), list)
     }
 }

@@ -22,6 +22,8 @@ mod run;
 mod sets;
 mod staging;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod timer;
 mod uploads;
 

@@ -159,6 +159,12 @@ impl Reads {
         ReadBack::Failed
     }
 
+    /// How many buffers there are.
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
+        self.free.count() + self.pending.len()
+    }
+
     pub(crate) fn give_up(&mut self, ticket: Ticket) {
         self.pending.remove(&ticket);
         self.failed.remove(&ticket);

@@ -38,6 +38,12 @@ impl BindGroups {
         }
     }
 
+    /// How many there are.
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
+        self.groups.len()
+    }
+
     /// Forgets the groups of what is gone.
     pub(crate) fn forget<B, T, P>(&mut self, swept: &[Swept<B, T, P>]) {
         let mut resources = HashSet::new();

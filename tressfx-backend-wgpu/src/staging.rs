@@ -96,6 +96,11 @@ impl Pool {
         Some(self.0.swap_remove(best))
     }
 
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
+        self.0.len()
+    }
+
     /// Keeps a buffer for its next use, unless it is large or there are enough.
     pub(crate) fn give(&mut self, buffer: wgpu::Buffer) {
         if buffer.size() <= KEPT_BYTES && self.0.len() < KEPT {

@@ -123,6 +123,12 @@ impl Timer {
         Self { period, pending: VecDeque::new(), free: Vec::new() }
     }
 
+    /// How many sets of queries there are.
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
+        self.free.len() + self.pending.len()
+    }
+
     /// After the last pass of a list.
     pub(crate) fn end(&mut self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, frame: Frame) {
         let Frame { timings, used, queries } = frame;

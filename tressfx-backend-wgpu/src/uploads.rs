@@ -45,6 +45,12 @@ impl Belt {
         }
     }
 
+    /// How many there are.
+    #[cfg(test)]
+    pub(crate) fn count(&self) -> usize {
+        self.free.count() + self.out.len()
+    }
+
     /// After the last command of `encoder` that reads them.
     pub(crate) fn give_back(&mut self, encoder: &wgpu::CommandEncoder, uploads: Uploads) {
         for buffer in uploads.buffers {
