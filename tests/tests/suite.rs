@@ -56,8 +56,8 @@ mod cpu {
 /// What a backend lacks is skipped by name, and the rest is asked for all the same.
 mod lacking {
     use tressfx_conformance::suite::{CASES, Outcome, report};
-    use tressfx_core::backend::{Caps, Need};
-    use tressfx_core::error::Error;
+    use tressfx_core::backend::Caps;
+    use tressfx_core::error::{Error, Need};
     use tressfx_core::null::NullBackend;
 
     /// Needs of the cases that are skipped on a backend of these caps; none fails.
