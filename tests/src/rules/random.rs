@@ -164,11 +164,13 @@ fn raster(world: &World, passes: &Passes, dice: &mut Dice) -> Command {
         pass = pass.depth(world.depth, dice.of(&[Load::Keep, Load::Clear(1.0), Load::Clear(0.0)]));
     }
     if dice.once_in(3) {
-        let mut edge = || dice.below(if dice.once_in(SELDOM) { 12 } else { 5 }) as u32;
+        let most = if dice.once_in(SELDOM) { 12 } else { 5 };
+        let mut edge = || dice.below(most) as u32;
         pass = pass.viewport(Viewport { origin: [edge(), edge()], size: [1 + edge() / 2, 1 + edge() / 2] });
     }
     for _ in 0..dice.below(4) {
-        pass = pass.draw(draw(world, passes, dice, pass.depth.is_some()));
+        let has_depth = pass.depth.is_some();
+        pass = pass.draw(draw(world, passes, dice, has_depth));
     }
     Command::Raster(pass)
 }
