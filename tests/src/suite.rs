@@ -28,11 +28,13 @@ use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
-use tressfx_core::backend::Run;
-use tressfx_core::error::{Error, Need};
+use tressfx_core::backend::{Backend, Run};
+use tressfx_core::error::Error;
 
 pub use cases::CASES;
 use subject::Subject;
+/// What a case may need of a device.
+pub use tressfx_core::error::Need;
 
 /// Makes a fresh backend.
 pub(crate) type Make<'a> = &'a (dyn Fn() -> Result<Box<dyn Run>, String> + Sync);
@@ -97,17 +99,34 @@ pub fn report<B: Run + 'static, E: Display>(make: impl Fn() -> Result<B, E> + Sy
     CASES.iter().map(|case| (case.name, case.outcome(&make))).collect()
 }
 
-/// Runs the case of a name as a test: it panics where the promise is broken, and prints where it is skipped.
+/// Holds that what was skipped is what the backend says that it lacks.
+///
+/// # Errors
+/// The cases that were skipped for something which the backend has.
+pub fn promises(backend: &dyn Backend, outcomes: &[(&'static str, Outcome)]) -> Result<(), String> {
+    let broken = outcomes.iter().filter_map(|(name, outcome)| match outcome {
+        Outcome::Skipped(need) => {
+            backend.caps().check("suite", &[*need]).is_ok().then(|| format!("{name}: skipped, but there are {need}\n"))
+        }
+        _ => None,
+    });
+    let broken: String = broken.collect();
+    if broken.is_empty() { Ok(()) } else { Err(broken) }
+}
+
+/// Runs the case of a name as a test: it panics where the promise is broken, or where the device denies what is not among
+/// `lacks`, and prints where it is skipped.
 ///
 /// Where no backend can be made and `TRESSFX_NO_GPU` says that this is known, the case is skipped as well.
 ///
 /// # Panics
 /// Where the promise is broken, or no backend can be made.
-pub fn test<B: Run + 'static, E: Display>(name: &str, make: impl Fn() -> Result<B, E> + Sync) {
+pub fn test<B: Run + 'static, E: Display>(name: &str, make: impl Fn() -> Result<B, E> + Sync, lacks: &[Need]) {
     let case = CASES.iter().find(|case| case.name == name).expect("the macro only names cases that there are");
     match case.attempt(&boxed(make)) {
         Ok(None) => {}
-        Ok(Some(need)) => say_skipped(name, &format!("needs {need}")),
+        Ok(Some(need)) if lacks.contains(&need) => say_skipped(name, &format!("needs {need}")),
+        Ok(Some(need)) => panic!("{name} is skipped: it needs {need}, and nobody said that the backend lacks that"),
         Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => say_skipped(name, &error),
         Err(error) => panic!("{error}"),
     }
@@ -153,17 +172,22 @@ fn words(panic: &(dyn std::any::Any + Send)) -> String {
 /// One `#[test]` for each case of the suite.
 ///
 /// Takes a closure without arguments that makes a fresh backend: `Result<impl Run, impl Display>`. It is called from
-/// many threads, once or twice for each case.
+/// many threads, once or twice for each case. A backend that lacks something on purpose says so; else a case that cannot run
+/// fails.
 ///
 /// ```ignore
 /// tressfx_conformance::suite!(|| MyBackend::headless());
+/// tressfx_conformance::suite!(|| MyCopies::new(), lacks: [Compute, Raster]);
 /// ```
 #[macro_export]
 macro_rules! suite {
     ($make:expr) => {
+        $crate::suite!($make, lacks: []);
+    };
+    ($make:expr, lacks: [$($need:ident),*]) => {
         #[allow(clippy::redundant_closure, reason = "a closure is what is asked for, whatever it calls")]
         fn test_of_suite(name: &str) {
-            $crate::suite::test(name, $make);
+            $crate::suite::test(name, $make, &[$($crate::suite::Need::$need),*]);
         }
         $crate::each_case!($crate::one_test_each);
     };

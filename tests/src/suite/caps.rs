@@ -247,6 +247,8 @@ pub(super) fn parts_begin_at_every_offset_that_is_claimed(t: &mut Subject) {
     let (input, output) = (t.storage(&words), t.zeros(64));
     for offset in [alignment, 3 * alignment] {
         t.dispatch(&kernel, &[("input", input.range(offset, 256)), ("output", output.into())], [1; 3]);
+        let list = std::mem::take(&mut t.list);
+        t.backend.run(&list).expect("the caps say so");
         let expected: Vec<u32> = (0..64).rev().map(|i| i + offset as u32 / 4 + 1).collect();
         assert_eq!(t.words(output, 64), expected, "at {offset}");
     }
