@@ -4,8 +4,7 @@ use std::ffi::CString;
 
 use anyhow::Result;
 use tressfx_backend_vulkan::ash::vk;
-use tressfx_core::naga::ShaderStage;
-use tressfx_core::shader::{Shader, ShaderSource, Specialization, SpirvOptions};
+use tressfx_core::shader::{Shader, ShaderSource, ShaderStage, Specialization, SpirvOptions};
 use tressfx_examples::Vertex;
 
 use crate::gpu::Gpu;

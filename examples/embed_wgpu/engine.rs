@@ -217,7 +217,7 @@ fn pipeline(
     // An engine has its own way to shaders; here it is the library's.
     let source = ShaderSource { label, root: (label, source), library: &[] };
     let shader = Shader::new(&source, &Specialization::new())?;
-    let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.module));
+    let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone()));
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source });
     Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),

@@ -3,8 +3,7 @@
 use ash::vk;
 use tressfx_core::backend::{ComputeDesc, RasterDesc};
 use tressfx_core::error::{Error, Label, Result};
-use tressfx_core::naga::ShaderStage;
-use tressfx_core::shader::{Kernel, RasterPipeline, Shader, SlotKind, Stages};
+use tressfx_core::shader::{Kernel, RasterPipeline, Shader, ShaderStage, SlotKind, Stages};
 
 use crate::VulkanBackend;
 use crate::device::Gpu;

@@ -4,8 +4,7 @@ use std::borrow::Cow;
 
 use tressfx_core::backend::{ComputeDesc, RasterDesc};
 use tressfx_core::error::Result;
-use tressfx_core::naga::ShaderStage;
-use tressfx_core::shader::{Kernel, RasterPipeline, Shader};
+use tressfx_core::shader::{Kernel, RasterPipeline, Shader, ShaderStage};
 
 use crate::WgpuBackend;
 use crate::tables::{blend_state, depth_state, layout_entry, texture_format};
@@ -104,8 +103,10 @@ impl WgpuBackend {
 
     fn parts(&self, shader: &Shader) -> Result<(wgpu::ShaderModule, wgpu::BindGroupLayout, wgpu::PipelineLayout)> {
         let label = Some(shader.label);
-        let descriptor =
-            wgpu::ShaderModuleDescriptor { label, source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module.clone())) };
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone())),
+        };
         let checks = wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
         // SAFETY: all checks of memory accesses stay on. Off is only the counter that ends endless loops, which costs
         // every turn of every loop; the library's loops end by their own bounds.

@@ -24,5 +24,6 @@ pub mod view;
 pub use error::{Error, Result};
 /// The vectors, matrices and rotations that all crates use.
 pub use glam;
-/// The shader compiler whose modules a [`shader::Shader`] holds.
+/// The shader compiler, for backends that take its modules.
+#[cfg(feature = "naga-ir")]
 pub use naga;

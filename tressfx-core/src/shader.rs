@@ -1,31 +1,43 @@
 //! Shaders: WGSL composed, parsed and validated once, with their bindings reflected.
 //!
-//! A backend gets the naga module and emits what its API takes: wgpu takes it as it is, Vulkan writes SPIR-V from it.
-//! Engines that compile shaders by themselves are given them by [`Shader::emit`].
+//! What was made once is kept for the process: the next groom of the same kind gets its shaders at once. A backend writes
+//! what its API takes: wgpu takes the parsed module as it is (feature `naga-ir`), Vulkan SPIR-V (feature `spirv`). Engines
+//! that compile shaders by themselves are given them by [`Shader::emit`], in the languages whose features are on.
 
 mod bindings;
+mod cache;
 mod compose;
 mod emit;
+mod entry_point;
+#[cfg(feature = "glsl")]
 mod glsl;
+#[cfg(feature = "hlsl")]
 mod hlsl;
 mod layout;
+#[cfg(feature = "msl")]
 mod msl;
 mod pipeline;
 mod reflect;
+#[cfg(feature = "spirv")]
 mod spirv;
+
+use std::fmt;
+use std::sync::Arc;
 
 pub use bindings::{Binding, Bindings, Sampler};
 pub use compose::{Module, ShaderSource, Specialization, shared_modules};
 pub use emit::{Emitted, Extra, Language};
+pub use entry_point::{EntryPoint, ShaderStage};
 pub use layout::{FieldLayout, GpuStruct, StructLayout};
 pub use pipeline::{Kernel, RasterPipeline};
 pub use reflect::{ShaderSlot, SlotKind, Stages};
+#[cfg(feature = "spirv")]
 pub use spirv::SpirvOptions;
 
 use crate::error::{Error, Label, Result};
 
-/// A shader that is ready for any backend.
-#[derive(Debug)]
+/// A shader that is ready for any backend. Cheap to clone.
+#[derive(Clone)]
 pub struct Shader {
     /// The kernel's label.
     pub label: Label,
@@ -34,22 +46,40 @@ pub struct Shader {
     /// The same, for programs.
     pub specialization: Specialization,
     /// The composed WGSL.
-    pub wgsl: String,
-    /// The parsed module.
-    pub module: naga::Module,
-    /// What validation found out about it.
-    pub info: naga::valid::ModuleInfo,
+    pub wgsl: Arc<str>,
+    /// Where its stages begin.
+    pub entry_points: Vec<EntryPoint>,
     /// Its bindings, all in `@group(0)`, by ascending number.
     pub slots: Vec<ShaderSlot>,
+    parsed: Arc<Parsed>,
+}
+
+/// What naga made of a shader.
+struct Parsed {
+    module: naga::Module,
+    /// What validation found out about the module.
+    #[cfg_attr(
+        not(any(feature = "spirv", feature = "hlsl", feature = "msl", feature = "glsl", feature = "naga-ir")),
+        expect(dead_code, reason = "only writers look at it")
+    )]
+    info: naga::valid::ModuleInfo,
+}
+
+impl fmt::Debug for Shader {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.debug_struct("Shader").field("label", &self.label).field("features", &self.features).finish_non_exhaustive()
+    }
 }
 
 impl Shader {
-    /// Composes `source`, parses, validates and reflects it.
+    /// Composes `source`, parses, validates and reflects it; or gives what was made of it before.
     ///
     /// # Errors
     /// [`Error::Shader`] with the compiler's message.
     pub fn new(source: &ShaderSource, specialization: &Specialization) -> Result<Self> {
-        Self::parse(source.label, specialization, compose::compose(source, specialization)?)
+        cache::get_or_make(source, specialization, || {
+            Self::parse(source.label, specialization, compose::compose(source, specialization)?)
+        })
     }
 
     fn parse(label: Label, specialization: &Specialization, wgsl: String) -> Result<Self> {
@@ -65,17 +95,35 @@ impl Shader {
             let message = format!("`{name}` is to be overridden: constants come with the specialization");
             return Err(Error::Shader { label, message });
         }
-        let slots = reflect::slots(label, &module, &info)?;
-        let features = specialization.to_string();
-        Ok(Self { label, features, specialization: specialization.clone(), wgsl, module, info, slots })
+        Ok(Self {
+            label,
+            features: specialization.to_string(),
+            specialization: specialization.clone(),
+            wgsl: wgsl.into(),
+            entry_points: entry_point::entry_points(&module, &info),
+            slots: reflect::slots(label, &module, &info)?,
+            parsed: Arc::new(Parsed { module, info }),
+        })
+    }
+
+    /// The module that naga parsed.
+    #[cfg(feature = "naga-ir")]
+    pub fn module(&self) -> &naga::Module {
+        &self.parsed.module
+    }
+
+    /// What validation found out about the module.
+    #[cfg(feature = "naga-ir")]
+    pub fn module_info(&self) -> &naga::valid::ModuleInfo {
+        &self.parsed.info
     }
 
     /// The entry point of a stage.
     ///
     /// # Errors
     /// [`Error::Shader`] if there is none, or more than one.
-    pub fn entry_point(&self, stage: naga::ShaderStage) -> Result<&naga::EntryPoint> {
-        let mut found = self.module.entry_points.iter().filter(|entry| entry.stage == stage);
+    pub fn entry_point(&self, stage: ShaderStage) -> Result<&EntryPoint> {
+        let mut found = self.entry_points.iter().filter(|entry| entry.stage == stage);
         match (found.next(), found.next()) {
             (Some(entry), None) => Ok(entry),
             (None, _) => Err(Error::Shader { label: self.label, message: format!("no {stage:?} entry point") }),
@@ -107,14 +155,13 @@ impl Shader {
     /// # Errors
     /// As [`Shader::entry_point`].
     pub fn group(&self) -> Result<([u32; 3], u32)> {
-        let size = self.entry_point(naga::ShaderStage::Compute)?.workgroup_size;
-        let index = self.module.entry_points.iter().position(|entry| entry.stage == naga::ShaderStage::Compute);
-        Ok((size, index.map_or(0, |index| reflect::group_memory(&self.module, &self.info, index))))
+        let entry = self.entry_point(ShaderStage::Compute)?;
+        Ok((entry.workgroup_size.unwrap_or([1; 3]), entry.group_memory))
     }
 
     /// Whether it has a fragment stage.
     pub fn has_fragment_stage(&self) -> bool {
-        self.module.entry_points.iter().any(|entry| entry.stage == naga::ShaderStage::Fragment)
+        self.entry_points.iter().any(|entry| entry.stage == ShaderStage::Fragment)
     }
 
     /// The colours that the fragment stage gives: target and type in the WGSL.
@@ -122,24 +169,24 @@ impl Shader {
     /// # Errors
     /// As [`Shader::entry_point`], or if the fragment stage is given what the vertex stage does not hand on.
     pub fn colors(&self) -> Result<Vec<(u32, String)>> {
-        let vertex = self.entry_point(naga::ShaderStage::Vertex)?;
-        if let Some((location, ty)) = reflect::inputs(&self.module, vertex).first() {
+        let vertex = self.entry_point(ShaderStage::Vertex)?;
+        if let Some((location, ty)) = vertex.inputs.first() {
             let message = format!("the vertex stage is given {ty} at location {location}: there are no vertex buffers");
             return Err(Error::Shader { label: self.label, message });
         }
         if !self.has_fragment_stage() {
             return Ok(Vec::new());
         }
-        let fragment = self.entry_point(naga::ShaderStage::Fragment)?;
-        let handed = reflect::outputs(&self.module, vertex);
-        match reflect::inputs(&self.module, fragment).into_iter().find(|input| !handed.contains(input)) {
+        let fragment = self.entry_point(ShaderStage::Fragment)?;
+        let handed = &vertex.outputs;
+        match fragment.inputs.iter().find(|input| !handed.contains(input)) {
             Some((location, ty)) => Err(Error::Shader {
                 label: self.label,
                 message: format!(
                     "the fragment stage is given {ty} at location {location}, the vertex stage hands on {handed:?}"
                 ),
             }),
-            None => Ok(reflect::outputs(&self.module, fragment)),
+            None => Ok(fragment.outputs.clone()),
         }
     }
 }

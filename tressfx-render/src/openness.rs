@@ -33,13 +33,14 @@ const WEIGHTS: [f32; 3] = [1.0 / 21.0, 4.0 / 105.0, 9.0 / 280.0];
 /// For each vertex of the guides, strand-major: in the frame of [`crate::StrandInfo::openness`]. `radius` is that of a fibre in
 /// the unit of the file.
 pub(crate) fn openness(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
-    let mut grid = Grid::around(strands);
-    grid.add_hair(strands, radius);
-    grid.add_skin(strands);
-    let light = grid.light();
+    let lattice = Lattice::around(strands);
+    let mut medium = Medium { lattice, depth: vec![0.0; lattice.cells()] };
+    medium.add_hair(strands, radius);
+    medium.add_skin(strands);
+    let light = medium.light(&lattice.cells_around(strands));
     let vertices = strands.vertices as usize;
     let local = |i: usize| {
-        let [constant, vector] = grid.sample(&light, strands.rest[i].truncate());
+        let [constant, vector] = lattice.sample(&light, strands.rest[i].truncate());
         in_frame(constant.w, vector.truncate(), strands.tangents[i].truncate(), strands.root_directions[i / vertices])
     };
     (0..strands.rest.len()).map(local).collect()
@@ -51,22 +52,24 @@ fn in_frame(constant: f32, vector: Vec3, tangent: Vec3, growth: Vec3) -> [f32; 4
     [vector.dot(tangent), vector.dot(across), vector.dot(tangent.cross(across)), constant]
 }
 
-/// Cubic cells with what they absorb on the way through.
-struct Grid {
+/// Cubic cells around a groom.
+#[derive(Clone, Copy)]
+struct Lattice {
     origin: Vec3,
     cell: f32,
     size: IVec3,
-    /// Optical depth per cell.
-    depth: Vec<f32>,
 }
 
-impl Grid {
+impl Lattice {
     fn around(strands: &Strands) -> Self {
         let extent = strands.bounds.max - strands.bounds.min;
         let cell = (extent.max_element() / CELLS).max(f32::MIN_POSITIVE);
         let size = (extent / cell).ceil().as_ivec3() + 2 * MARGIN;
-        let depth = vec![0.0; (size.x * size.y * size.z) as usize];
-        Self { origin: strands.bounds.min - MARGIN as f32 * cell, cell, size, depth }
+        Self { origin: strands.bounds.min - MARGIN as f32 * cell, cell, size }
+    }
+
+    fn cells(&self) -> usize {
+        (self.size.x * self.size.y * self.size.z) as usize
     }
 
     fn index(&self, at: IVec3) -> Option<usize> {
@@ -75,7 +78,7 @@ impl Grid {
     }
 
     /// The eight cells around a point and their shares.
-    fn around_point(&self, point: Vec3) -> impl Iterator<Item = (usize, f32)> {
+    fn around_point(self, point: Vec3) -> impl Iterator<Item = (usize, f32)> {
         let at = (point - self.origin) / self.cell - 0.5;
         let (low, share) = (at.floor().as_ivec3(), at - at.floor());
         (0..8).filter_map(move |corner: i32| {
@@ -85,22 +88,46 @@ impl Grid {
         })
     }
 
+    /// Whether light is asked for in each cell: in those around the vertices of the guides.
+    fn cells_around(&self, strands: &Strands) -> Vec<bool> {
+        let mut wanted = vec![false; self.cells()];
+        for vertex in &strands.rest {
+            self.around_point(vertex.truncate()).for_each(|(cell, _)| wanted[cell] = true);
+        }
+        wanted
+    }
+
+    fn sample(self, light: &[[Vec4; 2]], point: Vec3) -> [Vec4; 2] {
+        self.around_point(point).fold([Vec4::ZERO; 2], |[constant, vector], (cell, share)| {
+            [constant + light[cell][0] * share, vector + light[cell][1] * share]
+        })
+    }
+}
+
+/// What the cells absorb.
+struct Medium {
+    lattice: Lattice,
+    /// Optical depth of each cell on the way through it.
+    depth: Vec<f32>,
+}
+
+impl Medium {
     /// Adds what strands cover: their width times their length, seen from everywhere (pi/4 of it), as a share of the side of
     /// a cell.
     fn add_hair(&mut self, strands: &Strands, radius: f32) {
+        let Lattice { cell, .. } = self.lattice;
         let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
         let used = guides.min(MAX_GUIDES);
         let stands_for = (1 + strands.follows) as f32 * guides as f32 / used.max(1) as f32;
-        let cover = std::f32::consts::FRAC_PI_2 * radius * stands_for * ABSORPTION / (self.cell * self.cell);
+        let cover = std::f32::consts::FRAC_PI_2 * radius * stands_for * ABSORPTION / (cell * cell);
         for strand in strands.rest.chunks(vertices).take(used) {
             for ends in strand.windows(2) {
                 let [a, b] = [ends[0].truncate(), ends[1].truncate()];
-                let steps = (a.distance(b) / (0.5 * self.cell)).ceil().clamp(1.0, 256.0);
+                let steps = (a.distance(b) / (0.5 * cell)).ceil().clamp(1.0, 256.0);
                 let each = cover * a.distance(b) / steps;
                 for step in 0..steps as u32 {
                     let point = a.lerp(b, (step as f32 + 0.5) / steps);
-                    let cells: Vec<_> = self.around_point(point).collect();
-                    cells.into_iter().for_each(|(cell, share)| self.depth[cell] += each * share);
+                    self.lattice.around_point(point).for_each(|(cell, share)| self.depth[cell] += each * share);
                 }
             }
         }
@@ -108,64 +135,67 @@ impl Grid {
 
     /// Adds a ball behind each root, as large as the roots are apart, so that together they are a skin without holes.
     fn add_skin(&mut self, strands: &Strands) {
+        let Lattice { cell, origin, .. } = self.lattice;
         let roots = strands.rest.iter().step_by(strands.vertices as usize).map(|root| root.truncate());
         let extent = Bounds::of(roots.clone()).max - Bounds::of(roots.clone()).min;
         let area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
         let spacing = (area / strands.guides.max(1) as f32).sqrt();
-        let radius = (spacing / self.cell).clamp(1.0, MAX_SKIN);
+        let radius = (spacing / cell).clamp(1.0, MAX_SKIN);
         let reach = radius.ceil() as i32;
         let ball: Vec<IVec3> = (-reach..=reach)
             .flat_map(|z| (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| IVec3::new(x, y, z))))
             .filter(|step| step.as_vec3().length() <= radius)
             .collect();
         for (root, direction) in roots.zip(&strands.root_directions).take(MAX_GUIDES) {
-            let middle = root - *direction * self.cell * (radius + 1.0);
-            let at = ((middle - self.origin) / self.cell).floor().as_ivec3();
-            for cell in ball.iter().filter_map(|&step| self.index(at + step)).collect::<Vec<_>>() {
-                self.depth[cell] = self.depth[cell].max(SKIN);
+            let middle = root - *direction * cell * (radius + 1.0);
+            let at = ((middle - origin) / cell).floor().as_ivec3();
+            for index in ball.iter().filter_map(|&step| self.lattice.index(at + step)) {
+                self.depth[index] = self.depth[index].max(SKIN);
             }
         }
     }
 
-    /// For each cell the light that arrives, of unit light from everywhere: `[0, 0, 0, constant]` and the vector.
-    fn light(&self) -> Vec<[Vec4; 2]> {
+    /// The light that arrives in each cell that is `wanted`, of unit light from everywhere: `[0, 0, 0, constant]` and the
+    /// vector.
+    fn light(&self, wanted: &[bool]) -> Vec<[Vec4; 2]> {
         let mut light = vec![[Vec4::ZERO; 2]; self.depth.len()];
         let mut passed = vec![0.0f32; self.depth.len()];
         let steps = (0..27).map(|i| IVec3::new(i % 3, i / 3 % 3, i / 9) - 1).filter(|&step| step != IVec3::ZERO);
         for step in steps {
             let weight = WEIGHTS[step.abs().element_sum() as usize - 1];
             let towards = -step.as_vec3().normalize();
-            let length = step.as_vec3().length();
-            self.sweep(step, |at, before| {
-                passed[at] = before.map_or(0.0, |b| passed[b] + 0.5 * (self.depth[b] + self.depth[at]) * length);
-                let arriving = weight * (-passed[at]).exp();
-                light[at][0].w += arriving;
-                light[at][1] += (3.0 * arriving * towards).extend(0.0);
-            });
+            self.follow(step, &mut passed);
+            for ((light, &passed), _) in light.iter_mut().zip(&passed).zip(wanted).filter(|(_, wanted)| **wanted) {
+                let arriving = weight * (-passed).exp();
+                light[0].w += arriving;
+                light[1] += (3.0 * arriving * towards).extend(0.0);
+            }
         }
         light
     }
 
-    /// Visits all cells so that the one before it along `step` comes first.
-    fn sweep(&self, step: IVec3, mut visit: impl FnMut(usize, Option<usize>)) {
+    /// The optical depth that light has passed when it reaches each cell along `step`.
+    fn follow(&self, step: IVec3, passed: &mut [f32]) {
+        let size = self.lattice.size;
+        let length = step.as_vec3().length();
+        let back = ((step.z * size.y + step.y) * size.x + step.x) as isize;
+        // The cell before another along the step comes first.
         let along = |size: i32, step: i32, i: i32| if step < 0 { size - 1 - i } else { i };
-        for z in 0..self.size.z {
-            for y in 0..self.size.y {
-                for x in 0..self.size.x {
-                    let [x, y, z] = [0, 1, 2].map(|axis| along(self.size[axis], step[axis], [x, y, z][axis]));
-                    let at = IVec3::new(x, y, z);
-                    if let Some(cell) = self.index(at) {
-                        visit(cell, self.index(at - step));
-                    }
+        for z in (0..size.z).map(|z| along(size.z, step.z, z)) {
+            for y in (0..size.y).map(|y| along(size.y, step.y, y)) {
+                let row = ((z * size.y + y) * size.x) as usize;
+                let row_before = (0..size.z).contains(&(z - step.z)) && (0..size.y).contains(&(y - step.y));
+                for x in (0..size.x).map(|x| along(size.x, step.x, x)) {
+                    let at = row + x as usize;
+                    passed[at] = if row_before && (0..size.x).contains(&(x - step.x)) {
+                        let before = at.wrapping_add_signed(-back);
+                        passed[before] + 0.5 * (self.depth[before] + self.depth[at]) * length
+                    } else {
+                        0.0
+                    };
                 }
             }
         }
-    }
-
-    fn sample(&self, light: &[[Vec4; 2]], point: Vec3) -> [Vec4; 2] {
-        self.around_point(point).fold([Vec4::ZERO; 2], |[constant, vector], (cell, share)| {
-            [constant + light[cell][0] * share, vector + light[cell][1] * share]
-        })
     }
 }
 

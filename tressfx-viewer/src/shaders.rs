@@ -8,9 +8,10 @@ use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use serde::Serialize;
 use tressfx_core::backend::{Caps, DepthOrder, Format};
-use tressfx_core::naga::ShaderStage;
 use tressfx_core::null::NullBackend;
-use tressfx_core::shader::{Emitted, Extra, Language, Shader, ShaderSlot, Stages, StructLayout};
+use tressfx_core::shader::{
+    Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
+};
 use tressfx_core::shape::Capsule;
 use tressfx_render::{HairRenderer, RenderDesc, ScenePass};
 use tressfx_sim::{HairSim, SectionDesc};
@@ -21,7 +22,7 @@ use crate::params::Params;
 
 /// An entry point in `bindings.json`.
 #[derive(Serialize)]
-struct EntryPoint<'a> {
+struct DescribedEntryPoint<'a> {
     label: &'a str,
     stage: &'static str,
     /// In the WGSL.
@@ -67,11 +68,16 @@ struct ExtraBuffer {
     holds: Vec<String>,
 }
 
-const STAGES: [(ShaderStage, Stages, &str); 3] = [
-    (ShaderStage::Compute, Stages::COMPUTE, "comp"),
-    (ShaderStage::Vertex, Stages::VERTEX, "vert"),
-    (ShaderStage::Fragment, Stages::FRAGMENT, "frag"),
-];
+const STAGES: [ShaderStage; 3] = [ShaderStage::Compute, ShaderStage::Vertex, ShaderStage::Fragment];
+
+/// The stage, as files and compilers of shaders call it.
+fn suffix(stage: ShaderStage) -> &'static str {
+    match stage {
+        ShaderStage::Compute => "comp",
+        ShaderStage::Vertex => "vert",
+        ShaderStage::Fragment => "frag",
+    }
+}
 
 /// Writes a file for each entry point and language, and `bindings.json`.
 pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
@@ -87,16 +93,15 @@ pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
     let mut entries = Vec::new();
     for shader in chosen {
         let name = file_name(shader, &all);
-        for (stage, flag, suffix) in STAGES {
-            if shader.module.entry_points.iter().any(|entry| entry.stage == stage) {
-                let mut entry = EntryPoint::new(shader, stage, flag, suffix)?;
-                for language in args.languages() {
-                    let emitted = shader.emit(stage, language)?;
-                    let written = write(args, format!("{name}.{suffix}.{}", language.ending()), emitted)?;
-                    entry.languages.insert(language.name(), written);
-                }
-                entries.push(entry);
+        for found in &shader.entry_points {
+            let suffix = suffix(found.stage);
+            let mut entry = DescribedEntryPoint::new(shader, found);
+            for language in args.languages() {
+                let emitted = shader.emit(found.stage, language)?;
+                let written = write(args, format!("{name}.{suffix}.{}", language.ending()), emitted)?;
+                entry.languages.insert(language.name(), written);
             }
+            entries.push(entry);
         }
     }
     let path = args.out.join("bindings.json");
@@ -141,35 +146,33 @@ fn write(args: &cli::Shaders, file: String, Emitted { code, entry_point, extra }
     Ok(Written { file, entry_point, extra })
 }
 
-impl<'a> EntryPoint<'a> {
-    fn new(shader: &'a Shader, stage: ShaderStage, flag: Stages, suffix: &'static str) -> Result<Self> {
-        let entry = shader.entry_point(stage)?;
-        let slots = shader.slots.iter().filter(|slot| slot.stages.intersects(flag));
-        Ok(Self {
+impl<'a> DescribedEntryPoint<'a> {
+    fn new(shader: &'a Shader, entry: &'a EntryPoint) -> Self {
+        Self {
             label: shader.label,
-            stage: suffix,
+            stage: suffix(entry.stage),
             entry_point: &entry.name,
-            workgroup_size: (stage == ShaderStage::Compute).then_some(entry.workgroup_size),
+            workgroup_size: entry.workgroup_size,
             features: shader.specialization.features().iter().copied().collect(),
             constants: shader.specialization.constants().iter().copied().collect(),
-            bindings: slots.map(Binding::new).collect(),
+            bindings: shader.slots_of(entry.stage).map(Binding::new).collect(),
             structs: shader.structs(),
             languages: BTreeMap::new(),
-        })
+        }
     }
 }
 
 impl<'a> Binding<'a> {
     fn new(slot: &'a ShaderSlot) -> Self {
-        let stages = STAGES.iter().filter(|(_, flag, _)| slot.stages.intersects(*flag));
+        let stages = STAGES.into_iter().filter(|&stage| slot.stages.intersects(Stages::from(stage)));
         Self {
             name: &slot.name,
             binding: slot.binding,
             kind: slot.kind.to_string(),
             type_name: &slot.type_name,
             min_bytes: slot.min_bytes,
-            stages: stages.map(|(_, _, suffix)| *suffix).collect(),
-            places: Language::ALL.map(|language| (language.name(), language.place(slot))).into(),
+            stages: stages.map(suffix).collect(),
+            places: Language::ALL.iter().map(|language| (language.name(), language.place(slot))).collect(),
         }
     }
 }

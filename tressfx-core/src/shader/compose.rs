@@ -15,7 +15,7 @@ pub fn shared_modules() -> &'static [Module] {
 }
 
 /// Where a shader comes from.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaderSource {
     /// The kernel's label, such as `hair.sim.integrate`.
     pub label: Label,
@@ -86,7 +86,8 @@ pub(super) fn compose(source: &ShaderSource, specialization: &Specialization) ->
         resolver.add_module(path(name), (*text).into());
     }
     resolver.add_module(path("constants"), specialization.constants_module().into());
-    let mut options = CompileOptions::default();
+    // naga validates the whole.
+    let mut options = CompileOptions { validate: false, ..CompileOptions::default() };
     for (name, on) in &specialization.features {
         options.features.flags.insert((*name).to_owned(), (*on).into());
     }

@@ -2,42 +2,75 @@
 
 use std::fmt::Write;
 
-use naga::ShaderStage;
+#[cfg(feature = "glsl")]
 use naga::back::glsl::Version;
 
-use super::{Shader, ShaderSlot, SlotKind, SpirvOptions, glsl, hlsl, msl};
-use crate::error::{Error, Result};
+#[cfg(any(feature = "hlsl", feature = "msl"))]
+use super::SlotKind;
+#[cfg(feature = "spirv")]
+use super::SpirvOptions;
+#[cfg(feature = "glsl")]
+use super::glsl;
+#[cfg(feature = "hlsl")]
+use super::hlsl;
+#[cfg(feature = "msl")]
+use super::msl;
+use super::{Shader, ShaderSlot, ShaderStage};
+use crate::error::Result;
 
-/// A language that a shader is written out in. Bindings keep the numbers of the WGSL: see [`Language::place`].
+/// A language that a shader is written out in; each but WGSL is a feature of this crate. Bindings keep the numbers of the WGSL: see [`Language::place`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Language {
     /// The composed WGSL with all its entry points, as an application would give it to WebGPU.
     Wgsl,
+    #[cfg(feature = "spirv")]
     /// SPIR-V 1.6 for Vulkan 1.3. It relies on no robustness of the device; [`Shader::spirv`] can.
     Spirv,
+    #[cfg(feature = "hlsl")]
     /// HLSL for shader model 6.0. Slots lie in space 0: `b` registers are uniforms, `t` what is read, `u` what is written.
     /// Storage buffers are byte address buffers. A constant buffer in space 1 brings the number of groups.
     Hlsl,
-    /// The Metal Shading Language 2.4. Buffer 30 brings the sizes of the buffers whose length the WGSL leaves open. Nothing that we run checks it: its compiler runs on Apple's machines only.
+    #[cfg(feature = "msl")]
+    /// The Metal Shading Language 2.4. Buffer 30 brings the sizes of the buffers whose length the WGSL leaves open. No test
+    /// checks it: its compiler runs on Apple's machines only.
     Msl,
+    #[cfg(feature = "glsl")]
     /// GLSL 4.50 for OpenGL 4.5. Names of slots begin with `g_`. A depth texture is read without comparison.
     Glsl,
+    #[cfg(feature = "glsl")]
     /// The same in GLSL ES 3.10 for OpenGL ES 3.1; the kernels bind more storage buffers than each such device has.
     Essl,
 }
 
 impl Language {
-    /// All of them.
-    pub const ALL: [Self; 6] = [Self::Wgsl, Self::Spirv, Self::Hlsl, Self::Msl, Self::Glsl, Self::Essl];
+    /// Those that this build writes.
+    pub const ALL: &'static [Self] = &[
+        Self::Wgsl,
+        #[cfg(feature = "spirv")]
+        Self::Spirv,
+        #[cfg(feature = "hlsl")]
+        Self::Hlsl,
+        #[cfg(feature = "msl")]
+        Self::Msl,
+        #[cfg(feature = "glsl")]
+        Self::Glsl,
+        #[cfg(feature = "glsl")]
+        Self::Essl,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Wgsl => "wgsl",
+            #[cfg(feature = "spirv")]
             Self::Spirv => "spirv",
+            #[cfg(feature = "hlsl")]
             Self::Hlsl => "hlsl",
+            #[cfg(feature = "msl")]
             Self::Msl => "msl",
+            #[cfg(feature = "glsl")]
             Self::Glsl => "glsl",
+            #[cfg(feature = "glsl")]
             Self::Essl => "essl",
         }
     }
@@ -45,7 +78,9 @@ impl Language {
     /// What its files end in.
     pub fn ending(self) -> &'static str {
         match self {
+            #[cfg(feature = "spirv")]
             Self::Spirv => "spv",
+            #[cfg(feature = "msl")]
             Self::Msl => "metal",
             other => other.name(),
         }
@@ -56,14 +91,23 @@ impl Language {
         let number = slot.binding;
         match (self, slot.kind) {
             (Self::Wgsl, _) => format!("@group(0) @binding({number})"),
+            #[cfg(feature = "spirv")]
             (Self::Spirv, _) => format!("DescriptorSet 0 Binding {number}"),
+            #[cfg(feature = "hlsl")]
             (Self::Hlsl, SlotKind::Uniform) => format!("register(b{number})"),
+            #[cfg(feature = "hlsl")]
             (Self::Hlsl, kind) if kind.is_written() => format!("register(u{number})"),
+            #[cfg(feature = "hlsl")]
             (Self::Hlsl, SlotKind::Sampler) => format!("register(s{number})"),
+            #[cfg(feature = "hlsl")]
             (Self::Hlsl, _) => format!("register(t{number})"),
+            #[cfg(feature = "msl")]
             (Self::Msl, SlotKind::Sampler) => format!("[[sampler({number})]]"),
+            #[cfg(feature = "msl")]
             (Self::Msl, kind) if kind.is_texture() => format!("[[texture({number})]]"),
+            #[cfg(feature = "msl")]
             (Self::Msl, _) => format!("[[buffer({number})]]"),
+            #[cfg(feature = "glsl")]
             (Self::Glsl | Self::Essl, _) => format!("binding = {number}"),
         }
     }
@@ -104,14 +148,19 @@ impl Shader {
     pub fn emit(&self, stage: ShaderStage, language: Language) -> Result<Emitted> {
         let mut emitted = match language {
             Language::Wgsl => self.emitted(stage, self.wgsl.as_bytes())?,
+            #[cfg(feature = "spirv")]
             Language::Spirv => {
                 let options =
                     SpirvOptions { version: (1, 6), robust_buffers: false, robust_textures: false, names: true };
                 return self.emitted(stage, bytemuck::cast_slice(&self.spirv(stage, &options)?));
             }
+            #[cfg(feature = "hlsl")]
             Language::Hlsl => hlsl::write(self, stage)?,
+            #[cfg(feature = "msl")]
             Language::Msl => msl::write(self, stage)?,
+            #[cfg(feature = "glsl")]
             Language::Glsl => glsl::write(self, stage, Version::Desktop(450))?,
+            #[cfg(feature = "glsl")]
             Language::Essl => glsl::write(self, stage, Version::new_gles(310))?,
         };
         // The first line of GLSL has to say its version.
@@ -129,7 +178,7 @@ impl Shader {
 
     /// The slots that a stage sees.
     pub fn slots_of(&self, stage: ShaderStage) -> impl Iterator<Item = &ShaderSlot> {
-        let stage = super::Stages::of(stage).unwrap_or_default();
+        let stage = super::Stages::from(stage);
         self.slots.iter().filter(move |slot| slot.stages.intersects(stage))
     }
 
@@ -149,8 +198,9 @@ impl Shader {
     }
 
     /// An error of a back end of naga.
-    pub(super) fn refused(&self, error: impl std::fmt::Display) -> Error {
-        Error::Shader { label: self.label, message: error.to_string() }
+    #[cfg(any(feature = "spirv", feature = "hlsl", feature = "msl", feature = "glsl"))]
+    pub(super) fn refused(&self, error: impl std::fmt::Display) -> crate::Error {
+        crate::Error::Shader { label: self.label, message: error.to_string() }
     }
 }
 
@@ -169,8 +219,13 @@ mod tests {
         let source = ShaderSource { label: "test.kernel", root: ("kernel", KERNEL), library: &[] };
         let shader = Shader::new(&source, &Specialization::new()).unwrap();
         let name = |language| shader.emit(ShaderStage::Compute, language).unwrap().entry_point;
-        assert_eq!(Language::ALL.map(name), ["length", "length", "length_", "length", "main", "main"]);
-        for language in Language::ALL {
+        for &language in Language::ALL {
+            let expected = match language.name() {
+                "hlsl" => "length_",
+                "glsl" | "essl" => "main",
+                _ => "length",
+            };
+            assert_eq!(name(language), expected, "{language:?}");
             let error = shader.emit(ShaderStage::Vertex, language).unwrap_err();
             assert_eq!(error.to_string(), "test.kernel: no Vertex entry point");
         }

@@ -1,11 +1,10 @@
 //! GLSL from a shader.
 
-use naga::ShaderStage;
 use naga::back::glsl;
 use naga::proc::BoundsCheckPolicies;
 
 use super::emit::Emitted;
-use super::{Shader, SlotKind};
+use super::{Shader, ShaderStage, SlotKind};
 use crate::error::Result;
 
 /// Writes a stage. Its buffers and textures have the names of the WGSL behind a `g_`, so that none is a word of GLSL.
@@ -20,11 +19,11 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage, version: glsl::Version)
         ..glsl::Options::default()
     };
     let entry_point = shader.entry_point(stage)?.name.clone();
-    let pipeline = glsl::PipelineOptions { shader_stage: stage, entry_point, multiview: None };
+    let pipeline = glsl::PipelineOptions { shader_stage: stage.into(), entry_point, multiview: None };
     let mut text = String::new();
     // naga has no checks for buffers in GLSL, and those for textures are not in OpenGL ES.
     let unchecked = BoundsCheckPolicies::default();
-    glsl::Writer::new(&mut text, &shader.module, &shader.info, &options, &pipeline, unchecked)
+    glsl::Writer::new(&mut text, &shader.parsed.module, &shader.parsed.info, &options, &pipeline, unchecked)
         .and_then(|mut writer| writer.write().map(drop))
         .map_err(|error| shader.refused(error))?;
     for slot in &shader.slots {

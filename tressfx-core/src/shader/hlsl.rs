@@ -1,10 +1,10 @@
 //! HLSL from a shader.
 
+use naga::BuiltIn;
 use naga::back::hlsl;
-use naga::{BuiltIn, ShaderStage};
 
-use super::Shader;
 use super::emit::{Emitted, Extra};
+use super::{Shader, ShaderStage};
 use crate::error::Result;
 
 /// Beside the registers of the slots, in a space of its own. HLSL cannot ask for the number of groups.
@@ -17,7 +17,7 @@ const GROUPS: hlsl::BindTarget = hlsl::BindTarget {
 };
 
 pub(super) fn write(shader: &Shader, stage: ShaderStage) -> Result<Emitted> {
-    let counts_groups = counts_groups(shader, stage)?;
+    let counts_groups = counts_groups(shader, stage);
     // A slot without a target gets the register of its WGSL number.
     let options = hlsl::Options {
         shader_model: hlsl::ShaderModel::V6_0,
@@ -26,10 +26,10 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage) -> Result<Emitted> {
         force_loop_bounding: false,
         ..hlsl::Options::default()
     };
-    let pipeline = hlsl::PipelineOptions { entry_point: Some((stage, shader.entry_point(stage)?.name.clone())) };
+    let pipeline = hlsl::PipelineOptions { entry_point: Some((stage.into(), shader.entry_point(stage)?.name.clone())) };
     let mut text = String::new();
     let written = hlsl::Writer::new(&mut text, &options, &pipeline)
-        .write(&shader.module, &shader.info, None)
+        .write(&shader.parsed.module, &shader.parsed.info, None)
         .map_err(|error| shader.refused(error))?;
     let entry_point = written.entry_point_names.into_iter().next().expect("one was asked for");
     let entry_point = entry_point.map_err(|error| shader.refused(error))?;
@@ -42,7 +42,10 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage) -> Result<Emitted> {
 }
 
 /// Whether the entry point asks for the number of groups.
-fn counts_groups(shader: &Shader, stage: ShaderStage) -> Result<bool> {
-    let mut arguments = shader.entry_point(stage)?.function.arguments.iter();
-    Ok(arguments.any(|argument| argument.binding == Some(naga::Binding::BuiltIn(BuiltIn::NumWorkGroups))))
+fn counts_groups(shader: &Shader, stage: ShaderStage) -> bool {
+    let mut entries = shader.parsed.module.entry_points.iter().filter(|entry| entry.stage == stage.into());
+    entries.any(|entry| {
+        let mut arguments = entry.function.arguments.iter();
+        arguments.any(|argument| argument.binding == Some(naga::Binding::BuiltIn(BuiltIn::NumWorkGroups)))
+    })
 }

@@ -19,7 +19,7 @@ pub trait GpuStruct: bytemuck::Pod {
 /// Defines a struct that the GPU reads.
 ///
 /// Fields stand in the order of the WGSL struct of the same name; a test holds them against each other with
-/// [`Shader::check_layout`](crate::shader::Shader::check_layout).
+/// `Shader::check_layout` (feature `testing`).
 #[macro_export]
 macro_rules! gpu_struct {
     ($(#[$doc:meta])* $vis:vis struct $name:ident { $($(#[$field_doc:meta])* pub $field:ident: $type:ty,)* }) => {
@@ -63,16 +63,18 @@ impl Shader {
     /// The structs of its buffers, each after those that it holds.
     pub fn structs(&self) -> Vec<StructLayout> {
         let mut seen = HashSet::new();
-        for (_, variable) in self.module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some()) {
+        for (_, variable) in
+            self.parsed.module.global_variables.iter().filter(|(_, variable)| variable.binding.is_some())
+        {
             self.see(variable.ty, &mut seen);
         }
-        let types = self.module.types.iter().filter(|(handle, _)| seen.contains(handle));
+        let types = self.parsed.module.types.iter().filter(|(handle, _)| seen.contains(handle));
         types.filter_map(|(_, ty)| self.layout(ty)).collect()
     }
 
     fn see(&self, ty: Handle<Type>, seen: &mut HashSet<Handle<Type>>) {
         seen.insert(ty);
-        match &self.module.types[ty].inner {
+        match &self.parsed.module.types[ty].inner {
             TypeInner::Array { base, .. } => self.see(*base, seen),
             TypeInner::Struct { members, .. } => members.iter().for_each(|member| self.see(member.ty, seen)),
             _ => {}
@@ -83,17 +85,18 @@ impl Shader {
         let TypeInner::Struct { members, span } = &ty.inner else { return None };
         let field = |member: &StructMember| FieldLayout {
             name: member.name.clone().unwrap_or_default(),
-            type_name: self.module.to_ctx().type_to_string(member.ty),
+            type_name: self.parsed.module.to_ctx().type_to_string(member.ty),
             offset: member.offset,
         };
         let name = ty.name.clone().unwrap_or_default();
         Some(StructLayout { name, bytes: *span, fields: members.iter().map(field).collect() })
     }
 
-    /// Holds a Rust struct against the WGSL struct of the same name: fields, offsets and size.
+    /// Holds a Rust struct against the WGSL struct of the same name: fields, offsets and size. For tests.
     ///
     /// # Errors
     /// What differs, in words.
+    #[cfg(any(test, feature = "testing"))]
     pub fn check_layout<T: GpuStruct>(&self) -> Result<(), String> {
         let found = self.structs().into_iter().find(|layout| layout.name == T::NAME);
         let Some(layout) = found else { return Err(format!("{}: no struct `{}` in the WGSL", self.label, T::NAME)) };

@@ -1,11 +1,10 @@
 //! The Metal Shading Language from a shader.
 
-use naga::ShaderStage;
 use naga::back::msl;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
 use super::emit::{Emitted, Extra};
-use super::{Shader, ShaderSlot, SlotKind};
+use super::{Shader, ShaderSlot, ShaderStage, SlotKind};
 use crate::error::Result;
 
 /// The last index of a buffer that Metal has. Metal does not tell a shader how long its buffers are.
@@ -35,10 +34,11 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage) -> Result<Emitted> {
         force_loop_bounding: false,
         ..msl::Options::default()
     };
-    let pipeline = msl::PipelineOptions { entry_point: Some((stage, name)), ..msl::PipelineOptions::default() };
+    let pipeline = msl::PipelineOptions { entry_point: Some((stage.into(), name)), ..msl::PipelineOptions::default() };
     let mut writer = msl::Writer::new(String::new());
-    let written =
-        writer.write(&shader.module, &shader.info, &options, &pipeline).map_err(|error| shader.refused(error))?;
+    let written = writer
+        .write(&shader.parsed.module, &shader.parsed.info, &options, &pipeline)
+        .map_err(|error| shader.refused(error))?;
     let entry_point = written.entry_point_names.into_iter().next().expect("one was asked for");
     let entry_point = entry_point.map_err(|error| shader.refused(error))?;
     let text = writer.finish();
@@ -66,8 +66,8 @@ fn target(slot: &ShaderSlot) -> (naga::ResourceBinding, msl::BindTarget) {
 
 /// Buffers whose length the WGSL does not say, in the order in which they are declared.
 fn open_ended(shader: &Shader) -> impl Iterator<Item = &str> {
-    let types = &shader.module.types;
-    let variables = shader.module.global_variables.iter().map(|(_, variable)| variable);
+    let types = &shader.parsed.module.types;
+    let variables = shader.parsed.module.global_variables.iter().map(|(_, variable)| variable);
     variables
         .filter(|variable| types[variable.ty].inner.needs_host_buffer_byte_size(types))
         .filter_map(|variable| variable.name.as_deref())

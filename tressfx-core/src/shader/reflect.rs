@@ -4,10 +4,10 @@ use std::fmt;
 
 use naga::common::wgsl::TypeContext;
 use naga::{
-    AddressSpace, Binding, GlobalVariable, Handle, ImageClass, ScalarKind, ShaderStage, StorageAccess, StorageFormat,
-    TypeInner,
+    AddressSpace, Binding, GlobalVariable, Handle, ImageClass, ScalarKind, StorageAccess, StorageFormat, TypeInner,
 };
 
+use super::ShaderStage;
 use crate::error::{Error, Label, Result};
 use crate::format::Format;
 
@@ -108,13 +108,14 @@ impl Stages {
     pub fn intersects(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
+}
 
-    pub(super) fn of(stage: ShaderStage) -> Option<Self> {
+impl From<ShaderStage> for Stages {
+    fn from(stage: ShaderStage) -> Self {
         match stage {
-            ShaderStage::Compute => Some(Self::COMPUTE),
-            ShaderStage::Vertex => Some(Self::VERTEX),
-            ShaderStage::Fragment => Some(Self::FRAGMENT),
-            _ => None,
+            ShaderStage::Compute => Self::COMPUTE,
+            ShaderStage::Vertex => Self::VERTEX,
+            ShaderStage::Fragment => Self::FRAGMENT,
         }
     }
 }
@@ -137,7 +138,7 @@ pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::Mod
         let mut stages = Stages::default();
         for (index, entry) in module.entry_points.iter().enumerate() {
             if !info.get_entry_point(index)[handle].is_empty() {
-                stages = stages | Stages::of(entry.stage).unwrap_or_default();
+                stages = stages | ShaderStage::of(entry.stage).map(Stages::from).unwrap_or_default();
             }
         }
         if stages == Stages::default() {

@@ -3,8 +3,8 @@
 use naga::back::spv;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use super::Shader;
-use crate::error::{Error, Result};
+use super::{Shader, ShaderStage};
+use crate::error::Result;
 
 /// What SPIR-V is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl Shader {
     ///
     /// # Errors
     /// [`Error::Shader`] if there is no such entry point, or with what naga says.
-    pub fn spirv(&self, stage: naga::ShaderStage, options: &SpirvOptions) -> Result<Vec<u32>> {
+    pub fn spirv(&self, stage: ShaderStage, options: &SpirvOptions) -> Result<Vec<u32>> {
         let mut flags = spv::WriterFlags::LABEL_VARYINGS;
         flags.set(spv::WriterFlags::DEBUG, options.names);
         let checked = |robust| if robust { BoundsCheckPolicy::Unchecked } else { BoundsCheckPolicy::Restrict };
@@ -48,8 +48,8 @@ impl Shader {
             ..spv::Options::default()
         };
         let entry_point = self.entry_point(stage)?.name.clone();
-        let pipeline = spv::PipelineOptions { shader_stage: stage, entry_point };
-        spv::write_vec(&self.module, &self.info, &writer, Some(&pipeline))
-            .map_err(|error| Error::Shader { label: self.label, message: error.to_string() })
+        let pipeline = spv::PipelineOptions { shader_stage: stage.into(), entry_point };
+        spv::write_vec(&self.parsed.module, &self.parsed.info, &writer, Some(&pipeline))
+            .map_err(|error| self.refused(error))
     }
 }

@@ -1,0 +1,35 @@
+//! What it costs the CPU to create things: a simulation and a renderer without a GPU, and what is known of a groom's light.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use tressfx_asset::builtin::Builtin;
+use tressfx_core::backend::Format;
+use tressfx_core::null::NullBackend;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_render::{HairRenderer, RenderDesc, StrandInfo};
+use tressfx_sim::{HairSim, SectionDesc, SimParams};
+
+fn strands(groom: &str) -> Strands {
+    let asset = groom.parse::<Builtin>().expect("a built-in groom").asset();
+    Strands::new(&asset, &StrandOptions::default()).expect("strands")
+}
+
+fn create(c: &mut Criterion) {
+    let few = strands("wavy:64:16");
+    c.bench_function("HairSim::new", |bench| {
+        let section = || SectionDesc { strands: &few, params: SimParams::default() };
+        bench.iter(|| HairSim::new(&mut NullBackend::default(), &[section()], &[]).expect("a simulation"));
+    });
+    c.bench_function("HairRenderer::new", |bench| {
+        let desc = RenderDesc::new([128, 72], Format::Rgba16F);
+        bench.iter(|| HairRenderer::new(&mut NullBackend::default(), &desc).expect("a renderer"));
+    });
+    let many = strands("wavy:4000:32");
+    c.bench_function("StrandInfo::new", |bench| bench.iter(|| StrandInfo::new(&many)));
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(10);
+    targets = create
+}
+criterion_main!(benches);
