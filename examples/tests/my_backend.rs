@@ -8,7 +8,7 @@ use tressfx_conformance::suite::{CASES, Outcome, report};
 use tressfx_core::backend::Backend;
 use tressfx_core::error::{Error, Need};
 
-tressfx_conformance::suite!(|| Ok::<_, Error>(CpuBackend::new()));
+tressfx_conformance::suite!(|| Ok::<_, Error>(CpuBackend::new()), lacks: [Compute, Raster]);
 
 /// Cases that are skipped ask for passes, and all others pass: the whole of the contract without passes.
 #[test]

@@ -1,15 +1,18 @@
 //! Backends that are wrong in one thing, so that the suite itself can be tested: every fault must fail a case.
 
-use std::collections::HashMap;
+mod spoil;
+
+use std::collections::{HashMap, HashSet};
 
 use tressfx_core::backend::{
-    Backend, Blend, BufferDesc, Caps, ComputeDesc, Depth, DepthOrder, Format, Kernel, Memory, RasterDesc, TextureDesc,
-    Timing,
+    Backend, Blend, BufferDesc, Caps, ComputeDesc, Depth, DepthOrder, Format, Memory, RasterDesc, ReadBack, Run,
+    TextureDesc, Timing,
 };
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::{Error, Label, Result};
+use tressfx_core::hazards::accesses;
 use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
-use tressfx_core::pass::{Command, ComputePass, Grid, Groups, Load, PassList, RasterPass, Ticket};
-use tressfx_core::shader::Bindings;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::shader::{Kernel, RasterPipeline};
 
 /// What a backend does wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,14 +33,46 @@ pub enum Fault {
     CopiesFromTheStart,
     /// Ids of what was destroyed still work.
     StaleIdsLive,
+    /// What is destroyed is gone for lists that were begun before, too.
+    DestroyedAtOnce,
+    /// Commands that name resources of another backend are left out.
+    ForeignIdsIgnored,
+    /// Lists that break a rule are left out.
+    RulesIgnored,
+    /// What comes before a command that breaks a rule is run.
+    RulesLate,
+    /// What was given up can be read.
+    GivenUpIsRead,
+    /// Nothing is unknown: it is still to come.
+    NothingUnknown,
     /// What is destroyed still counts.
     MemoryNeverFreed,
     /// The caps claim one storage buffer more than there are.
     CapsBoast,
+    /// The caps claim one storage texture more than there are.
+    CapsBoastTextures,
+    /// The caps claim twice the threads of a group.
+    CapsBoastThreads,
+    /// The caps claim twice the memory of a group.
+    CapsBoastMemory,
+    /// The caps claim uniform bindings of twice the size.
+    CapsBoastUniforms,
+    /// The caps claim bindings at any offset.
+    CapsBoastAlignment,
+    /// The caps claim one colour target more than there are.
+    CapsBoastTargets,
+    /// The caps deny compute passes, which the device runs.
+    CapsDeny,
     /// The second pipeline of a label is the first one, whatever it was specialised on.
     CachedByLabel,
     /// Two bindings of one kind are swapped.
     BindingsSwapped,
+    /// Ranges that are bound begin at the start of their buffer.
+    RangesFromTheStart,
+    /// Of ranges that are bound, the whole rest of the buffer is.
+    RangesToTheEnd,
+    /// Linear is nearest, and nearest is linear.
+    SamplersSwapped,
     /// Every fifth pass is left out.
     PassesDropped,
     /// The grid has one layer.
@@ -46,6 +81,18 @@ pub enum Fault {
     CountsIgnored,
     /// One instance is drawn, however many are asked for.
     InstancesIgnored,
+    /// One triangle is drawn, whatever the buffer says.
+    DrawCountsIgnored,
+    /// Draws cover the whole target, whatever the viewport says.
+    ViewportIgnored,
+    /// Pipelines without a fragment stage draw nothing.
+    FragmentlessDropped,
+    /// Copies to textures begin at the start of the buffer.
+    RowsFromTheStart,
+    /// Copies to textures do nothing.
+    RowsNotCopied,
+    /// What compute passes write into textures is lost.
+    StorageWritesLost,
     /// Pictures are upside down.
     UpsideDown,
     /// Rows of pictures come back padded to 256 bytes.
@@ -54,8 +101,16 @@ pub enum Fault {
     RedIsBlue,
     /// sRGB is not encoded.
     SrgbLinear,
+    /// Ten bits are eight.
+    TenBitsAreEight,
+    /// Integers are cleared to zero, whatever is asked for.
+    IntegersClearToZero,
     /// Layers replace what they should lie over.
     OverReplaces,
+    /// What should be added is multiplied, and the other way round.
+    SumsAreProducts,
+    /// The smaller is the larger, and the other way round.
+    MinIsMax,
     /// Colour targets are swapped.
     TargetsSwapped,
     /// Colours that are to be kept are cleared.
@@ -66,8 +121,14 @@ pub enum Fault {
     DepthSwapped,
     /// Depth is tested, and forgotten after each draw.
     DepthForgotten,
+    /// Depth that should be tested alone is written.
+    DepthTestWrites,
     /// Timings come in reverse order.
     TimingsReversed,
+    /// Passes take no time.
+    TimingsZero,
+    /// Timings do not say whose pass it was.
+    ScopesForgotten,
 }
 
 /// A backend that does what `inner` does, but for one fault.
@@ -82,6 +143,8 @@ pub struct Faulty<B> {
     kernels: HashMap<Label, Kernel>,
     pictures: HashMap<Ticket, TextureDesc>,
     given: HashMap<Ticket, Vec<u8>>,
+    given_up: HashSet<Ticket>,
+    destroyed: HashSet<Resource>,
     passes: usize,
     memory: Memory,
 }
@@ -89,8 +152,7 @@ pub struct Faulty<B> {
 impl<B: Backend> Faulty<B> {
     /// Breaks a backend.
     pub fn new(inner: B, fault: Fault) -> Self {
-        let mut caps = inner.caps().clone();
-        caps.max_storage_buffers_per_stage += u32::from(fault == Fault::CapsBoast);
+        let caps = boast(inner.caps().clone(), fault);
         Self {
             inner,
             fault,
@@ -100,6 +162,8 @@ impl<B: Backend> Faulty<B> {
             kernels: HashMap::new(),
             pictures: HashMap::new(),
             given: HashMap::new(),
+            given_up: HashSet::new(),
+            destroyed: HashSet::new(),
             passes: 0,
             memory: Memory::default(),
         }
@@ -109,6 +173,7 @@ impl<B: Backend> Faulty<B> {
         match (self.fault, format) {
             (Fault::SrgbLinear, Format::Rgba8Srgb) => Format::Rgba8,
             (Fault::SrgbLinear, Format::Bgra8Srgb) => Format::Bgra8,
+            (Fault::TenBitsAreEight, Format::Rgb10A2) => Format::Rgba8,
             (Fault::RedIsBlue, Format::Rgba8) => Format::Bgra8,
             (Fault::RedIsBlue, Format::Bgra8) => Format::Rgba8,
             (_, format) => format,
@@ -123,102 +188,37 @@ impl<B: Backend> Faulty<B> {
         }
     }
 
-    fn spoiled(&mut self, list: &PassList) -> PassList {
-        let mut list = list.clone();
-        match self.fault {
-            Fault::UploadsFirst => list.commands.sort_by_key(|command| !matches!(command, Command::Upload { .. })),
-            Fault::ReadsLast => list.commands.sort_by_key(|command| matches!(command, Command::ReadBuffer { .. })),
-            _ => {}
-        }
-        list.commands = list.commands.into_iter().flat_map(|command| self.spoil(command)).collect();
-        list
-    }
-
-    /// What is done instead of a command.
-    fn spoil(&mut self, mut command: Command) -> Vec<Command> {
-        match (self.fault, &mut command) {
-            (Fault::ClearsAll, Command::Clear { dst, offset, bytes }) => {
-                (*offset, *bytes) = (0, self.sizes.get(&(*dst).into()).copied().unwrap_or(*bytes));
-            }
-            (Fault::ClearsNothing, Command::Clear { .. }) => return Vec::new(),
-            (Fault::CopiesFromTheStart, Command::Copy { src_offset, .. }) => *src_offset = 0,
-            (Fault::PassesDropped, Command::Compute(_) | Command::Raster(_)) => {
-                self.passes += 1;
-                return if self.passes.is_multiple_of(5) { Vec::new() } else { vec![command] };
-            }
-            (_, Command::Compute(pass)) => self.spoil_compute(pass),
-            (Fault::DepthForgotten, Command::Raster(pass)) => return forgetful(pass),
-            (_, Command::Raster(pass)) => self.spoil_raster(pass),
-            (_, Command::ReadTexture { src, ticket }) => {
-                self.textures.get(src).map(|desc| self.pictures.insert(*ticket, *desc));
-            }
-            _ => {}
-        }
-        vec![command]
-    }
-
-    fn spoil_compute(&self, pass: &mut ComputePass) {
-        match (self.fault, &mut pass.groups) {
-            (Fault::GridFlat, Groups::Grid(Grid(groups))) => groups[2] = 1,
-            (Fault::CountsIgnored, groups @ Groups::Indirect { .. }) => *groups = Groups::Grid(Grid([1; 3])),
-            (Fault::BindingsSwapped, _) => pass.bindings = swapped(&pass.kernel, &pass.bindings),
-            _ => {}
-        }
-    }
-
-    fn spoil_raster(&self, pass: &mut RasterPass) {
-        match self.fault {
-            Fault::InstancesIgnored => pass.draws.iter_mut().for_each(|draw| draw.instances = draw.instances.min(1)),
-            Fault::KeepClears => pass.colors.iter_mut().for_each(|(_, load)| {
-                if *load == Load::Keep {
-                    *load = Load::Clear([0.0; 4]);
-                }
-            }),
-            Fault::ClearKeeps => pass.colors.iter_mut().for_each(|(_, load)| *load = Load::Keep),
-            Fault::TargetsSwapped => {
-                let format = |id: &TextureId| self.textures.get(id).map(|desc| desc.format);
-                if pass.colors.len() > 1 && format(&pass.colors[0].0) == format(&pass.colors[1].0) {
-                    pass.colors.swap(0, 1);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    /// What a picture comes back as.
-    fn picture(&self, bytes: Vec<u8>, desc: &TextureDesc) -> Vec<u8> {
-        let row = (desc.size[0] * desc.format.bytes()) as usize;
-        match self.fault {
-            Fault::UpsideDown => bytes.chunks(row).rev().flatten().copied().collect(),
-            Fault::RowsPadded => {
-                let padding = vec![0; row.next_multiple_of(256) - row];
-                bytes.chunks(row).flat_map(|row| row.iter().chain(&padding)).copied().collect()
-            }
-            _ => bytes,
-        }
+    /// Whether a list names what it must not, where the fault is to see that in another way than core.
+    fn names(&self, list: &PassList, gone: impl Fn(&Resource) -> bool) -> bool {
+        list.commands().iter().flat_map(accesses).any(|(resource, _)| gone(&resource))
     }
 }
 
-/// The bindings with the first two of one kind swapped.
-fn swapped(kernel: &Kernel, bindings: &Bindings) -> Bindings {
-    let slots = &kernel.shader.slots;
-    let mut resources = bindings.resources().to_vec();
-    let pairs = (0..slots.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
-    if let Some((i, j)) = pairs.into_iter().find(|&(i, j)| slots[i].kind == slots[j].kind) {
-        resources.swap(i, j);
+/// What is claimed of a device.
+fn boast(mut caps: Caps, fault: Fault) -> Caps {
+    match fault {
+        Fault::CapsBoast => caps.max_storage_buffers_per_stage += 1,
+        Fault::CapsBoastTextures => caps.max_storage_textures_per_stage += 1,
+        Fault::CapsBoastThreads => caps.max_group_threads *= 2,
+        Fault::CapsBoastMemory => caps.max_group_memory_bytes *= 2,
+        Fault::CapsBoastUniforms => caps.max_uniform_binding_bytes *= 2,
+        Fault::CapsBoastAlignment => caps.binding_alignment = 4,
+        Fault::CapsBoastTargets => caps.max_color_targets += 1,
+        Fault::CapsDeny => caps.compute = false,
+        _ => {}
     }
-    let named: Vec<_> = slots.iter().map(|slot| slot.name.as_str()).zip(resources).collect();
-    kernel.bind(&named)
+    caps
 }
 
-/// A pass for each draw, which begins with the depth that the whole pass began with.
-fn forgetful(pass: &RasterPass) -> Vec<Command> {
-    let colors = pass.colors.iter().map(|&(texture, _)| (texture, Load::Keep)).collect();
-    let keeping = RasterPass { colors, ..pass.clone() };
-    let one = |(i, draw)| RasterPass { draws: vec![draw], ..if i == 0 { pass.clone() } else { keeping.clone() } };
-    match pass.draws.len() {
-        0 | 1 => vec![Command::Raster(pass.clone())],
-        _ => pass.draws.iter().cloned().enumerate().map(one).map(Command::Raster).collect(),
+/// What is done instead of a blend.
+fn blended(fault: Fault, blend: Blend) -> Blend {
+    match (fault, blend) {
+        (Fault::OverReplaces, _) => Blend::Replace,
+        (Fault::SumsAreProducts, Blend::Add) => Blend::Multiply,
+        (Fault::SumsAreProducts, Blend::Multiply) => Blend::Add,
+        (Fault::MinIsMax, Blend::Min) => Blend::Max,
+        (Fault::MinIsMax, Blend::Max) => Blend::Min,
+        (_, blend) => blend,
     }
 }
 
@@ -235,7 +235,8 @@ impl<B: Backend> Backend for Faulty<B> {
     }
 
     fn create_texture(&mut self, desc: &TextureDesc) -> Result<TextureId> {
-        let made = self.inner.create_texture(&TextureDesc { format: self.format(desc.format), ..*desc })?;
+        let changed = TextureDesc::new(desc.label, desc.size, self.format(desc.format)).with_uses(desc.uses);
+        let made = self.inner.create_texture(&changed)?;
         self.sizes.insert(made.into(), desc.bytes());
         self.memory.add(desc.bytes());
         self.textures.insert(made, *desc);
@@ -247,17 +248,15 @@ impl<B: Backend> Backend for Faulty<B> {
         Ok(self.cached(made))
     }
 
-    fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
+    fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
         let mut desc = desc.clone();
         for (format, blend) in &mut desc.targets {
-            *format = self.format(*format);
-            if self.fault == Fault::OverReplaces {
-                *blend = Blend::Replace;
-            }
+            (*format, *blend) = (self.format(*format), blended(self.fault, *blend));
         }
         desc.depth = match (self.fault, desc.depth) {
             (Fault::DepthSwapped, Depth::TestWrite(DepthOrder::Standard)) => Depth::TestWrite(DepthOrder::Reverse),
             (Fault::DepthSwapped, Depth::TestWrite(DepthOrder::Reverse)) => Depth::TestWrite(DepthOrder::Standard),
+            (Fault::DepthTestWrites, Depth::Test(order)) => Depth::TestWrite(order),
             (_, depth) => depth,
         };
         self.inner.create_raster(&desc)
@@ -265,6 +264,7 @@ impl<B: Backend> Backend for Faulty<B> {
 
     fn destroy(&mut self, resource: Resource) {
         let bytes = self.sizes.remove(&resource).unwrap_or(0);
+        self.destroyed.insert(resource);
         if self.fault != Fault::MemoryNeverFreed {
             self.memory.remove(bytes);
         }
@@ -280,20 +280,27 @@ impl<B: Backend> Backend for Faulty<B> {
         }
     }
 
-    fn run(&mut self, list: &PassList) -> Result<()> {
-        let list = self.spoiled(list);
-        self.inner.run(&list)
-    }
-
-    fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
-        let Some(bytes) = self.inner.read(ticket) else { return self.given.get(&ticket).cloned() };
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
+        let bytes = match self.inner.read(ticket) {
+            ReadBack::Ready(bytes) if !self.given_up.contains(&ticket) => bytes,
+            ReadBack::Unknown if self.fault == Fault::NothingUnknown => return ReadBack::Pending,
+            ReadBack::Unknown => return self.given.get(&ticket).cloned().map_or(ReadBack::Unknown, ReadBack::Ready),
+            other => return other,
+        };
         if self.fault == Fault::ReadsAgain {
             self.given.insert(ticket, bytes.clone());
         }
-        Some(match self.pictures.remove(&ticket) {
+        ReadBack::Ready(match self.pictures.remove(&ticket) {
             Some(desc) => self.picture(bytes, &desc),
             None => bytes,
         })
+    }
+
+    fn give_up(&mut self, ticket: Ticket) {
+        self.given_up.insert(ticket);
+        if self.fault != Fault::GivenUpIsRead {
+            self.inner.give_up(ticket);
+        }
     }
 
     fn timings(&mut self) -> Vec<Timing> {
@@ -301,10 +308,35 @@ impl<B: Backend> Backend for Faulty<B> {
         if self.fault == Fault::TimingsReversed {
             timings.reverse();
         }
+        for timing in &mut timings {
+            match self.fault {
+                Fault::TimingsZero => timing.nanoseconds = 0.0,
+                Fault::ScopesForgotten => timing.scope = None,
+                _ => {}
+            }
+        }
         timings
     }
 
     fn memory(&self) -> Memory {
         self.memory
+    }
+}
+
+impl<B: Run> Run for Faulty<B> {
+    fn run(&mut self, list: &PassList) -> Result<()> {
+        let destroyed = self.fault == Fault::DestroyedAtOnce;
+        if destroyed && self.names(list, |resource| self.destroyed.contains(resource)) {
+            return Err(Error::rule("a list", "it names what was destroyed"));
+        }
+        let list = self.spoiled(list);
+        match (self.inner.run(&list), self.fault) {
+            (Err(Error::Rule { .. }), Fault::RulesIgnored) => Ok(()),
+            (Err(error @ Error::Rule { .. }), Fault::RulesLate) => {
+                let one = |command: &_| self.inner.run(&list.with_commands(vec![Clone::clone(command)]));
+                list.commands().iter().try_for_each(one).and(Err(error))
+            }
+            (result, _) => result,
+        }
     }
 }

@@ -12,18 +12,19 @@
 pub mod embed;
 pub mod faulty;
 pub mod render;
+pub mod rules;
 pub mod show;
 pub mod sim;
 pub mod suite;
 
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::Run;
 use tressfx_core::pass::{PassList, Ticket};
 
 /// Runs a list and brings one read-back home.
 ///
 /// # Panics
 /// If the backend fails.
-pub fn run_and_read(backend: &mut dyn Backend, list: &PassList, ticket: Ticket) -> Vec<u8> {
+pub fn run_and_read(backend: &mut dyn Run, list: &PassList, ticket: Ticket) -> Vec<u8> {
     backend.run(list).expect("the list runs");
-    backend.read(ticket).expect("the list has run, so the bytes are there")
+    backend.read(ticket).ready().expect("the list has run, so the bytes are there")
 }

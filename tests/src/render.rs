@@ -2,7 +2,7 @@
 
 use glam::{DVec4, Vec3};
 use tressfx_asset::mesh::Mesh;
-use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
+use tressfx_core::backend::{DepthOrder, Format, Run, TextureDesc};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
@@ -157,7 +157,7 @@ impl Difference {
 /// A screen to draw on.
 pub struct Stage {
     /// The GPU.
-    pub backend: Box<dyn Backend>,
+    pub backend: Box<dyn Run>,
     /// The camera.
     pub view: View,
     /// The light.
@@ -175,7 +175,7 @@ impl Stage {
     ///
     /// # Panics
     /// If the backend refuses what it asks for.
-    pub fn new(mut backend: Box<dyn Backend>, change: impl FnOnce(&mut RenderDesc, &mut View)) -> Self {
+    pub fn new(mut backend: Box<dyn Run>, change: impl FnOnce(&mut RenderDesc, &mut View)) -> Self {
         let mut view = View {
             eye: Vec3::new(0.0, 0.0, 3.0),
             target: Vec3::ZERO,
@@ -190,7 +190,7 @@ impl Stage {
         desc.size = view.size;
         let renderer = HairRenderer::new(&mut *backend, &desc).expect("a renderer");
         let mut texture =
-            |label, format| backend.create_texture(&TextureDesc { label, size: view.size, format }).expect("a texture");
+            |label, format| backend.create_texture(&TextureDesc::new(label, view.size, format)).expect("a texture");
         let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
         Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth }
     }
@@ -217,12 +217,8 @@ impl Stage {
     /// Hair over nothing.
     pub fn hair(&mut self, grooms: &[&Groom]) -> Picture {
         let mut list = PassList::new();
-        list.raster(RasterPass {
-            label: "test.clear",
-            colors: vec![(self.color, Load::Clear([0.0; 4]))],
-            depth: Some((self.depth, Load::Clear(self.view.depth.far()))),
-            draws: Vec::new(),
-        });
+        let pass = RasterPass::new("test.clear").color(self.color, Load::Clear([0.0; 4]));
+        list.raster(pass.depth(self.depth, Load::Clear(self.view.depth.far())));
         self.over(list, grooms)
     }
 
@@ -269,7 +265,7 @@ impl Stage {
         let counters = self.renderer.read_counters(&mut list);
         let picture = list.read_texture(self.color);
         let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
-        let counters = Counters::from_bytes(&self.backend.read(counters).expect("it has run"));
+        let counters = Counters::from_bytes(&self.backend.read(counters).ready().expect("it has run"));
         sections.into_iter().for_each(|section| section.destroy(&mut *self.backend));
         Picture { size: self.view.size, bytes, counters }
     }

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use tressfx_asset::builtin::Builtin;
 use tressfx_asset::mesh::Mesh;
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::backend::{Format, Run, TextureDesc};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -105,16 +105,16 @@ pub struct Show<B> {
     frame: u32,
 }
 
-impl<B: Backend> Show<B> {
+impl<B: Run> Show<B> {
     /// # Panics
     /// If the backend cannot make what the scene needs.
     pub fn new(mut backend: B, scene: &Scene) -> Self {
-        let gpu: &mut dyn Backend = &mut backend;
+        let gpu: &mut dyn Run = &mut backend;
         let desc = SectionDesc { strands: &scene.strands, params: scene.params.clone() };
         let sim = HairSim::new(gpu, &[desc], &scene.capsules).expect("a simulation");
         let view = scene.view();
         let mut texture =
-            |label, format| gpu.create_texture(&TextureDesc { label, size: scene.size, format }).expect("a texture");
+            |label, format| gpu.create_texture(&TextureDesc::new(label, scene.size, format)).expect("a texture");
         let targets = Targets { color: texture("show.color", TARGET), depth: texture("show.depth", Format::Depth32F) };
         let mut uploads = PassList::new();
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
@@ -167,7 +167,7 @@ impl<B: Backend> Show<B> {
         let counters = self.renderer.read_counters(&mut list);
         let picture = list.read_texture(self.targets.color);
         let picture = run_and_read(&mut self.backend, &list, picture);
-        (picture, Counters::from_bytes(&self.backend.read(counters).expect("the list has run")))
+        (picture, Counters::from_bytes(&self.backend.read(counters).ready().expect("the list has run")))
     }
 
     /// Positions of all strands, as the GPU has them.

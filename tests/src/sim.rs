@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_asset::builtin::Builtin;
 use tressfx_core::asset::{AssetFormat, HairAsset};
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::Run;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands, about};
@@ -15,7 +15,7 @@ use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
 /// A simulation and the GPU that it runs on.
 pub struct Rig {
     /// The GPU.
-    pub backend: Box<dyn Backend>,
+    pub backend: Box<dyn Run>,
     /// The simulation.
     pub sim: HairSim,
     /// What it simulates.
@@ -27,7 +27,7 @@ impl Rig {
     ///
     /// # Panics
     /// If the simulation cannot be made.
-    pub fn new(mut backend: Box<dyn Backend>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
+    pub fn new(mut backend: Box<dyn Run>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
         let descs: Vec<_> =
             sections.iter().map(|(strands, params)| SectionDesc { strands, params: params.clone() }).collect();
         let sim = HairSim::new(&mut *backend, &descs, capsules).expect("the simulation is made");
@@ -106,11 +106,11 @@ impl Rig {
     /// If the backend fails.
     pub fn non_finite(&mut self) -> u32 {
         let ticket = self.run(|sim, list| sim.read_non_finite(list));
-        bytemuck::pod_read_unaligned(&self.backend.read(ticket).expect("the list has run"))
+        bytemuck::pod_read_unaligned(&self.backend.read(ticket).ready().expect("the list has run"))
     }
 
     fn read(&mut self, section: usize, ticket: Ticket) -> Vec<Vec4> {
-        let bytes = self.backend.read(ticket).expect("the list has run");
+        let bytes = self.backend.read(ticket).ready().expect("the list has run");
         self.strands[section].deinterleave(&bytemuck::pod_collect_to_vec::<u8, Vec4>(&bytes))
     }
 }

@@ -9,7 +9,7 @@ use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_compare::{Comparison, Picture, compare};
 use tressfx_conformance::show::{Scene, Show};
 use tressfx_conformance::sim::{REAL, real};
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::Run;
 use tressfx_render::Material;
 use tressfx_sim::SimParams;
 
@@ -54,7 +54,7 @@ fn scenes(groom: &Scene) -> Vec<Scene> {
         .collect()
 }
 
-fn shown(backend: impl Backend, scene: &Scene) -> (Picture, Vec<u8>, u32) {
+fn shown(backend: impl Run, scene: &Scene) -> (Picture, Vec<u8>, u32) {
     let mut show = Show::new(backend, scene);
     show.play(FRAMES);
     let (picture, counters) = show.picture();

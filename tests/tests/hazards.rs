@@ -5,14 +5,12 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use tressfx_core::backend::{
-    Backend, Blend, BufferDesc, BufferUse, ComputeDesc, Depth, Format, Kernel, RasterDesc, TextureDesc,
-};
+use tressfx_core::backend::{Backend, Blend, BufferDesc, ComputeDesc, Format, RasterDesc, TextureDesc};
 use tressfx_core::hazards::{Access, Hazards, Wait};
 use tressfx_core::id::{BufferId, Resource, TextureId};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, Draw, Grid, Load, PassList, RasterPass};
-use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, Kernel, RasterPipeline, Shader, ShaderSource, Specialization};
 
 /// The single kinds of access; a set of them is a mask of their places.
 const KINDS: [Access; 8] = [
@@ -60,7 +58,9 @@ fn layout(resource: Resource, kinds: u8) -> u8 {
     match resource {
         Resource::Buffer(_) => 0,
         Resource::Texture(_) if kinds & TARGET != 0 => TARGET,
+        Resource::Texture(_) if kinds & COPY_WRITE != 0 => COPY_WRITE,
         Resource::Texture(_) if kinds & COPY_READ != 0 => COPY_READ,
+        Resource::Texture(_) if kinds & COMPUTE_WRITE != 0 => COMPUTE_WRITE,
         Resource::Texture(_) => RASTER_READ | COMPUTE_READ,
     }
 }
@@ -109,12 +109,14 @@ enum Step {
     Upload(usize),
     Clear(usize),
     Copy(usize, usize),
+    CopyToTexture(usize, usize),
     ReadBuffer(usize),
     ReadTexture(usize),
     Turn(usize, usize),
     Change(usize),
     Indirect(usize, usize),
     Load(usize, usize),
+    Store(usize),
     Raster(usize, Vec<Drawn>),
 }
 
@@ -123,6 +125,7 @@ enum Step {
 enum Drawn {
     Paint(usize),
     Change(usize),
+    Indirect(usize),
     Sample,
 }
 
@@ -134,6 +137,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
     let drawn = prop_oneof![
         buffer.clone().prop_map(Drawn::Paint),
         buffer.clone().prop_map(Drawn::Change),
+        buffer.clone().prop_map(Drawn::Indirect),
         Just(Drawn::Sample),
     ];
     let step = prop_oneof![
@@ -145,7 +149,9 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
         pair.clone().prop_map(|(one, other)| Step::Turn(one, other)),
         buffer.clone().prop_map(Step::Change),
         pair.prop_map(|(one, other)| Step::Indirect(one, other)),
-        (texture.clone(), buffer).prop_map(|(one, other)| Step::Load(one, other)),
+        (texture.clone(), buffer.clone()).prop_map(|(one, other)| Step::Load(one, other)),
+        (buffer, texture.clone()).prop_map(|(one, other)| Step::CopyToTexture(one, other)),
+        texture.clone().prop_map(Step::Store),
         (texture, prop::collection::vec(drawn, 0..3)).prop_map(|(target, drawn)| Step::Raster(target, drawn)),
     ];
     prop::collection::vec(step, 1..40)
@@ -158,53 +164,54 @@ struct World {
     turn: Kernel,
     change: Kernel,
     load: Kernel,
-    paint: Kernel,
-    change_drawn: Kernel,
-    sample: Kernel,
+    store: Kernel,
+    paint: RasterPipeline,
+    change_drawn: RasterPipeline,
+    sample: RasterPipeline,
 }
 
 const INPUT: &str = "@group(0) @binding(0) var<storage, read> input: array<u32>;";
 const OUTPUT: &str = "@group(0) @binding(1) var<storage, read_write> output: array<u32>;";
 const PICTURE: &str = "@group(0) @binding(0) var picture: texture_2d<f32>;";
+const STORED: &str = "@group(0) @binding(0) var stored: texture_storage_2d<rgba8unorm, write>;";
 
-/// A compute or raster kernel of declarations and one statement.
-fn kernel(backend: &mut NullBackend, raster: bool, declarations: &[&str], statement: &str) -> Kernel {
-    let stage = match raster {
-        false => format!("@compute @workgroup_size(1) fn main() {{ {statement} }}"),
-        true => format!(
-            "@vertex fn vertex() -> @builtin(position) vec4<f32> {{ return vec4<f32>(); }}
-            @fragment fn fragment() -> @location(0) vec4<f32> {{ {statement} return vec4<f32>(); }}"
-        ),
-    };
-    let text = format!("{}\n{stage}", declarations.concat()).leak();
+fn shader(declarations: &[&str], stages: &str) -> Arc<Shader> {
+    let text = format!("{}\n{stages}", declarations.concat()).leak();
     let source = ShaderSource { label: "test.kernel", root: ("root", text), library: &[] };
-    let shader = Arc::new(Shader::new(&source, &Specialization::new()).unwrap());
-    let targets = vec![(Format::Rgba8, Blend::Replace)];
-    match raster {
-        false => backend.create_compute(&ComputeDesc { shader }).unwrap(),
-        true => backend.create_raster(&RasterDesc { shader, targets, depth: Depth::Off }).unwrap(),
-    }
+    Arc::new(Shader::new(&source, &Specialization::new()).unwrap())
+}
+
+/// A compute pipeline of declarations and one statement.
+fn compute(backend: &mut NullBackend, declarations: &[&str], statement: &str) -> Kernel {
+    let stage = format!("@compute @workgroup_size(1) fn main() {{ {statement} }}");
+    backend.create_compute(&ComputeDesc::new(shader(declarations, &stage))).unwrap()
+}
+
+/// A raster pipeline of a declaration and one statement of its fragments.
+fn raster(backend: &mut NullBackend, declaration: &str, statement: &str) -> RasterPipeline {
+    let stages = format!(
+        "@vertex fn vertex() -> @builtin(position) vec4<f32> {{ return vec4<f32>(); }}
+        @fragment fn fragment() -> @location(0) vec4<f32> {{ {statement} return vec4<f32>(); }}"
+    );
+    let desc = RasterDesc::new(shader(&[declaration], &stages)).target(Format::Rgba8, Blend::Replace);
+    backend.create_raster(&desc).unwrap()
 }
 
 impl World {
     fn new() -> Self {
         let mut backend = NullBackend::default();
-        let buffer = BufferDesc { label: "test.buffer", bytes: 16, usage: BufferUse::Indirect };
-        let texture = TextureDesc { label: "test.texture", size: [4, 4], format: Format::Rgba8 };
+        let buffer = BufferDesc::indirect("test.buffer", 16);
+        let texture = TextureDesc::new("test.texture", [4, 4], Format::Rgba8).storage();
         Self {
             buffers: [(); BUFFERS].map(|()| backend.create_buffer(&buffer).unwrap()),
             textures: [(); TEXTURES].map(|()| backend.create_texture(&texture).unwrap()),
-            turn: kernel(&mut backend, false, &[INPUT, OUTPUT], "output[0] = input[0];"),
-            change: kernel(&mut backend, false, &[OUTPUT], "output[0] = 1u;"),
-            load: kernel(
-                &mut backend,
-                false,
-                &[PICTURE, OUTPUT],
-                "output[0] = u32(textureLoad(picture, vec2<u32>(), 0).x);",
-            ),
-            paint: kernel(&mut backend, true, &[INPUT], "let x = input[0];"),
-            change_drawn: kernel(&mut backend, true, &[OUTPUT], "output[0] = 1u;"),
-            sample: kernel(&mut backend, true, &[PICTURE], "let x = textureLoad(picture, vec2<u32>(), 0);"),
+            turn: compute(&mut backend, &[INPUT, OUTPUT], "output[0] = input[0];"),
+            change: compute(&mut backend, &[OUTPUT], "output[0] = 1u;"),
+            load: compute(&mut backend, &[PICTURE, OUTPUT], "output[0] = u32(textureLoad(picture, vec2<u32>(), 0).x);"),
+            store: compute(&mut backend, &[STORED], "textureStore(stored, vec2<u32>(), vec4<f32>());"),
+            paint: raster(&mut backend, INPUT, "let x = input[0];"),
+            change_drawn: raster(&mut backend, OUTPUT, "output[0] = 1u;"),
+            sample: raster(&mut backend, PICTURE, "let x = textureLoad(picture, vec2<u32>(), 0);"),
         }
     }
 
@@ -213,7 +220,10 @@ impl World {
         let buffer = |i: &usize| Resource::from(self.buffers[*i]);
         let texture = |i: &usize| Resource::from(self.textures[*i]);
         let mut list = PassList::new();
-        let one = Grid([1; 3]);
+        let mut run = |kernel: &Kernel, bindings: &[(&str, Resource)]| {
+            let bindings: Vec<(&str, Binding)> = bindings.iter().map(|&(name, id)| (name, id.into())).collect();
+            list.compute(kernel, &kernel.bind(&bindings).unwrap(), Grid([1; 3]));
+        };
         let accesses = match step {
             Step::Upload(i) => {
                 list.upload(self.buffers[*i], 0, &[1u32]);
@@ -236,25 +246,33 @@ impl World {
                 vec![(texture(i), COPY_READ)]
             }
             Step::Turn(i, j) => {
-                list.compute(&self.turn, &self.turn.bind(&[("input", buffer(i)), ("output", buffer(j))]), one);
+                run(&self.turn, &[("input", buffer(i)), ("output", buffer(j))]);
                 vec![(buffer(i), COMPUTE_READ), (buffer(j), COMPUTE_READ | COMPUTE_WRITE)]
             }
             Step::Change(i) => {
-                list.compute(&self.change, &self.change.bind(&[("output", buffer(i))]), one);
+                run(&self.change, &[("output", buffer(i))]);
                 vec![(buffer(i), COMPUTE_READ | COMPUTE_WRITE)]
             }
             Step::Indirect(i, j) => {
-                let bindings = self.change.bind(&[("output", buffer(j))]);
+                let bindings = self.change.bind(&[("output", buffer(j).into())]).unwrap();
                 list.compute_indirect(&self.change, &bindings, self.buffers[*i], 0);
                 vec![(buffer(i), INDIRECT_READ), (buffer(j), COMPUTE_READ | COMPUTE_WRITE)]
             }
             Step::Load(i, j) => {
-                list.compute(&self.load, &self.load.bind(&[("picture", texture(i)), ("output", buffer(j))]), one);
+                run(&self.load, &[("picture", texture(i)), ("output", buffer(j))]);
                 vec![(texture(i), COMPUTE_READ), (buffer(j), COMPUTE_READ | COMPUTE_WRITE)]
+            }
+            Step::Store(i) => {
+                run(&self.store, &[("stored", texture(i))]);
+                vec![(texture(i), COMPUTE_WRITE)]
+            }
+            Step::CopyToTexture(i, j) => {
+                list.copy_to_texture(self.buffers[*i], 0, 256, self.textures[*j]);
+                vec![(buffer(i), COPY_READ), (texture(j), COPY_WRITE)]
             }
             Step::Raster(target, drawn) => return self.raster(*target, drawn),
         };
-        (list.commands.remove(0), accesses)
+        (list.commands()[0].clone(), accesses)
     }
 
     fn raster(&self, target: usize, drawn: &[Drawn]) -> (Command, Vec<(Resource, u8)>) {
@@ -262,17 +280,24 @@ impl World {
         let other = Resource::from(self.textures[(target + 1) % TEXTURES]);
         let mut accesses: HashMap<Resource, u8> = HashMap::from([(self.textures[target].into(), TARGET)]);
         let draws = drawn.iter().map(|drawn| {
-            let (kernel, name, resource, kinds) = match drawn {
+            if let Drawn::Indirect(i) = drawn {
+                let counts = self.buffers[*i];
+                *accesses.entry(counts.into()).or_default() |= INDIRECT_READ;
+                accesses.entry(other).and_modify(|kinds| *kinds |= RASTER_READ).or_insert(RASTER_READ);
+                let bindings = self.sample.bind(&[("picture", other.into())]).unwrap();
+                return Draw::indirect(&self.sample, &bindings, counts, 0);
+            }
+            let (pipeline, name, resource, kinds) = match drawn {
                 Drawn::Paint(i) => (&self.paint, "input", self.buffers[*i].into(), RASTER_READ),
                 Drawn::Change(i) => (&self.change_drawn, "output", self.buffers[*i].into(), RASTER_READ | RASTER_WRITE),
-                Drawn::Sample => (&self.sample, "picture", other, RASTER_READ),
+                Drawn::Sample | Drawn::Indirect(_) => (&self.sample, "picture", other, RASTER_READ),
             };
             *accesses.entry(resource).or_default() |= kinds;
-            Draw { kernel: kernel.clone(), bindings: kernel.bind(&[(name, resource)]), vertices: 3, instances: 1 }
+            Draw::new(pipeline, &pipeline.bind(&[(name, resource.into())]).unwrap(), 3, 1)
         });
         let draws = draws.collect();
-        let colors = vec![(self.textures[target], Load::Keep)];
-        let pass = RasterPass { label: "test.raster", colors, depth: None, draws };
+        let mut pass = RasterPass::new("test.raster").color(self.textures[target], Load::Keep);
+        pass.draws = draws;
         (Command::Raster(pass), accesses.into_iter().collect())
     }
 }

@@ -118,7 +118,7 @@ fn nothing_to_draw_makes_no_pass() {
     let view = View { depth: DepthOrder::Standard, ..View::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 64]) };
     let renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
     let texture = |backend: &mut NullBackend, format| {
-        let desc = tressfx_core::backend::TextureDesc { label: "test", size: [64, 64], format };
+        let desc = tressfx_core::backend::TextureDesc::new("test", [64, 64], format);
         tressfx_core::backend::Backend::create_texture(backend, &desc).unwrap()
     };
     let targets =

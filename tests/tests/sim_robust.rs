@@ -319,7 +319,7 @@ fn what_is_not_finite_or_out_of_range_is_refused_and_nothing_is_recorded() {
     ] {
         assert_eq!(sim.step(&mut list, &input), Err(SimError::NonFinite { name }));
     }
-    assert!(list.commands.is_empty());
+    assert!(list.commands().is_empty());
     assert!(sim.set_clock_params(ClockParams { sub_step: 0.0, ..ClockParams::default() }).is_err());
     assert!(sim.set_params(&mut backend, 0, SimParams { damping: -1.0, ..SimParams::default() }).is_err());
 }
@@ -353,7 +353,7 @@ fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl(
     sim.step(&mut list, &motion.input(0.0, 0.0)).unwrap();
     sim.step(&mut list, &motion.input(1.0 / 60.0, 1.0 / 60.0)).unwrap();
     let mut seen = Vec::new();
-    for command in &list.commands {
+    for command in list.commands() {
         let tressfx_core::pass::Command::Compute(pass) = command else { continue };
         let shader = &pass.kernel.shader;
         assert!(shader.storage_buffers() <= 6, "{}", shader.label);

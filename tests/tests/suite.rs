@@ -37,7 +37,7 @@ mod null {
     use tressfx_core::error::Error;
     use tressfx_core::null::NullBackend;
 
-    tressfx_conformance::suite!(|| Ok::<_, Error>(NullBackend::default()));
+    tressfx_conformance::suite!(|| Ok::<_, Error>(NullBackend::default()), lacks: [ReadBack]);
 }
 
 /// On the CPU, without passes.
@@ -50,14 +50,14 @@ mod cpu {
 
     use crate::copies::Copies;
 
-    tressfx_conformance::suite!(|| Ok::<_, Error>(Copies::new()));
+    tressfx_conformance::suite!(|| Ok::<_, Error>(Copies::new()), lacks: [Compute, Raster]);
 }
 
 /// What a backend lacks is skipped by name, and the rest is asked for all the same.
 mod lacking {
-    use tressfx_conformance::suite::{CASES, Outcome, report};
-    use tressfx_core::backend::{Caps, Need};
-    use tressfx_core::error::Error;
+    use tressfx_conformance::suite::{CASES, Outcome, promises, report, test};
+    use tressfx_core::backend::Caps;
+    use tressfx_core::error::{Error, Need};
     use tressfx_core::null::NullBackend;
 
     /// Needs of the cases that are skipped on a backend of these caps; none fails.
@@ -70,6 +70,21 @@ mod lacking {
             Outcome::Failed(why) => panic!("{name}: {why}"),
         };
         outcomes.into_iter().filter_map(need).collect()
+    }
+
+    /// A backend that denies everything passes nothing.
+    #[test]
+    #[should_panic(expected = "nobody said that the backend lacks that")]
+    fn what_is_denied_in_silence_fails() {
+        let caps = Caps { compute: false, ..Caps::webgpu_default() };
+        test("hazards::compute_writes_twice", || Ok::<_, Error>(NullBackend::new(caps.clone())), &[Need::ReadBack]);
+    }
+
+    #[test]
+    fn what_was_skipped_for_something_that_is_there_is_told() {
+        let outcomes = [("one", Outcome::Skipped(Need::Compute)), ("two", Outcome::Skipped(Need::ReadBack))];
+        let told = promises(&NullBackend::default(), &outcomes).unwrap_err();
+        assert!(told.contains("one: skipped") && !told.contains("two"), "{told}");
     }
 
     #[test]

@@ -3,10 +3,13 @@
 
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_conformance::suite::{CASES, Outcome};
-use tressfx_core::backend::{Backend, BufferDesc, Caps, ComputeDesc, Kernel, Memory, RasterDesc, TextureDesc, Timing};
+use tressfx_core::backend::{
+    Backend, BufferDesc, Caps, ComputeDesc, Memory, RasterDesc, ReadBack, Run, TextureDesc, Timing,
+};
 use tressfx_core::error::Result;
 use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
 use tressfx_core::pass::{Command, PassList, Ticket};
+use tressfx_core::shader::{Kernel, RasterPipeline};
 
 /// Raw Vulkan that leaves barriers out. The uploads that a list begins with and the read-backs that it ends with run with
 /// barriers in lists of their own: they are the case's preparation and its proof.
@@ -19,16 +22,16 @@ fn unguarded() -> Result<Unguarded> {
 impl Unguarded {
     fn run_part(&mut self, list: &PassList, commands: &[Command], left_out: bool) -> Result<()> {
         self.0.leave_out_barriers(left_out);
-        self.0.run(&PassList { commands: commands.to_vec(), bytes: list.bytes.clone() })
+        self.0.run(&list.with_commands(commands.to_vec()))
     }
 }
 
-impl Backend for Unguarded {
+impl Run for Unguarded {
     fn run(&mut self, list: &PassList) -> Result<()> {
         let is_upload = |command: &Command| matches!(command, Command::Upload { .. });
         let is_read = |command: &Command| matches!(command, Command::ReadBuffer { .. } | Command::ReadTexture { .. });
-        let uploads = list.commands.iter().take_while(|command| is_upload(command)).count();
-        let (uploads, rest) = list.commands.split_at(uploads);
+        let uploads = list.commands().iter().take_while(|command| is_upload(command)).count();
+        let (uploads, rest) = list.commands().split_at(uploads);
         let reads = rest.iter().rev().take_while(|command| is_read(command)).count();
         let (middle, reads) = rest.split_at(rest.len() - reads);
         // Even without uploads: new textures and buffers are filled with zeros here.
@@ -36,7 +39,9 @@ impl Backend for Unguarded {
         self.run_part(list, middle, true)?;
         self.run_part(list, reads, false)
     }
+}
 
+impl Backend for Unguarded {
     fn caps(&self) -> &Caps {
         self.0.caps()
     }
@@ -53,7 +58,7 @@ impl Backend for Unguarded {
         self.0.create_compute(desc)
     }
 
-    fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
+    fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
         self.0.create_raster(desc)
     }
 
@@ -65,8 +70,12 @@ impl Backend for Unguarded {
         self.0.destroy_pipeline(pipeline);
     }
 
-    fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
         self.0.read(ticket)
+    }
+
+    fn give_up(&mut self, ticket: Ticket) {
+        self.0.give_up(ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {

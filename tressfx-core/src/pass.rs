@@ -392,7 +392,8 @@ impl PassList {
     /// The same list with other commands, for tools that leave some out or add to them. They name the bytes of this list.
     #[must_use]
     pub fn with_commands(&self, commands: Vec<Command>) -> Self {
-        Self { commands, ..self.clone() }
+        let epoch = self.epoch.clone().or_else(|| (!commands.is_empty()).then(Epoch::now));
+        Self { commands, epoch, ..self.clone() }
     }
 
     /// Writes `data` to `dst` from byte `offset` on. Its size must be a multiple of 4.

@@ -90,6 +90,11 @@ impl Shader {
         let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
             .validate(&module)
             .map_err(|error| Error::Shader { label, message: error.emit_to_string(&wgsl) })?;
+        if let Some((_, constant)) = module.overrides.iter().next() {
+            let name = constant.name.as_deref().unwrap_or("a constant");
+            let message = format!("`{name}` is to be overridden: constants come with the specialization");
+            return Err(Error::Shader { label, message });
+        }
         Ok(Self {
             label,
             features: specialization.to_string(),
@@ -165,6 +170,10 @@ impl Shader {
     /// As [`Shader::entry_point`], or if the fragment stage is given what the vertex stage does not hand on.
     pub fn colors(&self) -> Result<Vec<(u32, String)>> {
         let vertex = self.entry_point(ShaderStage::Vertex)?;
+        if let Some((location, ty)) = vertex.inputs.first() {
+            let message = format!("the vertex stage is given {ty} at location {location}: there are no vertex buffers");
+            return Err(Error::Shader { label: self.label, message });
+        }
         if !self.has_fragment_stage() {
             return Ok(Vec::new());
         }

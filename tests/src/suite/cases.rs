@@ -1,8 +1,11 @@
 //! The table of all cases, cheap ones first.
 
-use tressfx_core::backend::Need;
+use tressfx_core::error::Need;
 
-use super::{Case, caps, contract, depth, formats, hair, hazards, raster_hazards, scale, shaders, stale, state};
+use super::{
+    Case, bindings, caps, contract, depth, draws, formats, hair, hazards, raster_hazards, rules, scale, shaders, stale,
+    state, textures,
+};
 
 /// Gives the table to a macro: groups, and in them the names of the cases with what each needs.
 #[doc(hidden)]
@@ -21,7 +24,11 @@ macro_rules! each_case {
                 copies_chain: [ReadBack];
                 a_part_of_a_buffer_comes_back: [ReadBack];
                 a_read_back_has_its_place_in_the_list: [ReadBack];
+                appended_commands_follow_with_their_bytes: [ReadBack];
                 a_read_back_is_given_once: [ReadBack];
+                what_was_given_up_is_unknown: [ReadBack];
+                what_fails_half_way_is_freed: [];
+                a_list_that_breaks_a_rule_does_nothing: [ReadBack];
                 a_ticket_that_nobody_ran_gives_nothing: [];
                 new_buffers_are_zero: [ReadBack];
                 an_empty_read_back_is_empty: [ReadBack];
@@ -34,6 +41,7 @@ macro_rules! each_case {
             }
             stale {
                 a_destroyed_buffer_is_noticed: [];
+                a_destroyed_buffer_is_not_read_back: [ReadBack];
                 a_destroyed_buffer_is_noticed_in_a_pass: [Compute];
                 a_destroyed_texture_is_noticed: [Raster];
                 a_destroyed_compute_pipeline_is_noticed: [Compute];
@@ -41,7 +49,17 @@ macro_rules! each_case {
                 an_id_is_not_confused_with_its_successor: [];
                 a_pipeline_is_not_confused_with_its_successor: [Compute];
                 a_successor_in_the_same_place_is_bound: [Compute ReadBack];
-                a_list_that_breaks_a_rule_is_refused: [];
+                ids_of_another_backend_are_refused: [];
+                what_is_destroyed_lives_on_for_older_lists: [ReadBack];
+                a_destroyed_pipeline_lives_on_for_older_lists: [Compute ReadBack];
+                an_appended_list_keeps_what_it_named_alive: [ReadBack];
+                a_list_that_was_cleared_is_as_new: [];
+            }
+            rules {
+                every_mistake_of_a_copy_is_answered: [ReadBack];
+                every_mistake_of_a_pass_is_answered: [Compute Raster ReadBack];
+                every_mistake_of_a_description_is_answered: [];
+                what_is_not_refused_runs: [Compute Raster ReadBack];
             }
             caps {
                 as_many_storage_buffers_as_claimed_are_bound: [Compute ReadBack];
@@ -50,6 +68,12 @@ macro_rules! each_case {
                 buffers_beyond_the_caps_are_refused: [];
                 textures_beyond_the_caps_are_refused: [];
                 bindings_beyond_the_caps_are_refused: [Compute];
+                groups_are_as_large_as_claimed: [Compute ReadBack];
+                larger_groups_are_refused: [Compute];
+                as_many_storage_textures_as_claimed_are_written: [Compute ReadBack];
+                uniforms_are_as_large_as_claimed: [Compute ReadBack];
+                parts_begin_at_every_offset_that_is_claimed: [Compute ReadBack];
+                as_many_targets_as_claimed_are_drawn_to: [Raster ReadBack];
                 kernels_are_made_or_refused_as_the_caps_say: [];
                 timings_are_in_order_or_not_there: [Compute Raster];
                 caps_fit_the_library: [];
@@ -109,12 +133,45 @@ macro_rules! each_case {
                 depth_is_drawn_then_loaded_in_compute: [Compute Raster ReadBack];
                 depth_is_drawn_then_loaded_by_fragments: [Raster ReadBack];
             }
+            bindings {
+                a_part_is_all_that_a_shader_sees: [Compute ReadBack];
+                parts_of_two_buffers_are_read_and_written: [Compute ReadBack];
+                one_uniform_buffer_serves_many_passes: [Compute ReadBack];
+                one_buffer_is_read_in_two_parts: [Compute ReadBack];
+                draws_are_given_parts: [Raster ReadBack];
+            }
+            draws {
+                a_buffer_says_how_much_is_drawn: [Raster ReadBack];
+                a_buffer_may_say_that_nothing_is_drawn: [Raster ReadBack];
+                compute_writes_how_much_is_drawn: [Compute Raster ReadBack];
+                a_viewport_is_where_clip_space_lies: [Raster ReadBack];
+                nothing_is_drawn_beyond_a_viewport: [Raster ReadBack];
+                fragments_know_their_place_in_the_target: [Raster ReadBack];
+                without_a_fragment_stage_depth_is_drawn: [Raster ReadBack];
+            }
+            textures {
+                nearest_takes_the_nearest_texel: [Compute ReadBack];
+                linear_lies_between_texels: [Compute ReadBack];
+                samplers_clamp: [Compute ReadBack];
+                every_filterable_format_is_sampled: [Compute ReadBack];
+                fragments_sample: [Raster ReadBack];
+                rows_of_a_buffer_become_a_texture: [ReadBack];
+                a_copy_replaces_what_was_drawn: [Compute Raster ReadBack];
+                compute_writes_every_storage_format: [Compute ReadBack];
+                what_compute_writes_is_sampled_and_drawn_over: [Compute Raster ReadBack];
+                integers_are_loaded: [Compute ReadBack];
+            }
             state {
                 replace_replaces_alpha_and_all: [Raster ReadBack];
                 over_lays_premultiplied_colour_over: [Raster ReadBack];
                 over_blends_floats: [Raster ReadBack];
                 over_blends_srgb_as_light: [Raster ReadBack];
                 over_takes_more_light_than_alpha: [Raster ReadBack];
+                add_adds: [Raster ReadBack];
+                add_of_bytes_ends_at_one: [Raster ReadBack];
+                multiply_multiplies: [Raster ReadBack];
+                min_takes_the_smaller: [Raster ReadBack];
+                max_takes_the_larger: [Raster ReadBack];
                 draws_of_a_pass_are_in_order: [Raster ReadBack];
                 both_faces_are_drawn: [Raster ReadBack];
                 counter_clockwise_is_the_front: [Raster ReadBack];
@@ -126,12 +183,20 @@ macro_rules! each_case {
                 no_vertices_and_no_instances_draw_nothing: [Raster ReadBack];
             }
             formats {
-                new_textures_are_zero: [Raster ReadBack];
+                new_textures_are_zero: [ReadBack];
                 rgba8: [Raster ReadBack];
                 rgba8_srgb: [Raster ReadBack];
                 bgra8: [Raster ReadBack];
                 bgra8_srgb: [Raster ReadBack];
                 rgba16f: [Raster ReadBack];
+                rgb10a2: [Raster ReadBack];
+                r16f: [Raster ReadBack];
+                rg16f: [Raster ReadBack];
+                r32f: [Raster ReadBack];
+                r11g11b10f_is_drawn_to_or_refused: [Raster ReadBack];
+                r32_uint_is_cleared_and_drawn: [Raster ReadBack];
+                halves_round_to_the_nearest: [Raster ReadBack];
+                every_format_is_copied_to_and_loaded: [Compute ReadBack];
                 rgba16f_holds_more_than_one_and_less_than_nothing: [Raster ReadBack];
                 depth32f: [Raster ReadBack];
                 eight_bits_are_exact: [Raster ReadBack];
@@ -145,6 +210,7 @@ macro_rules! each_case {
                 farther_is_hidden_in_reverse_order: [Raster ReadBack];
                 equal_passes_in_standard_order: [Raster ReadBack];
                 equal_passes_in_reverse_order: [Raster ReadBack];
+                tested_alone_depth_stays: [Raster ReadBack];
                 off_takes_the_last: [Raster ReadBack];
                 depth_is_kept: [Raster ReadBack];
                 depth_is_cleared: [Raster ReadBack];

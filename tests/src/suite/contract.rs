@@ -1,9 +1,13 @@
 //! Buffers: what goes in, what is moved, what comes back, and in which order.
 
-use tressfx_core::backend::{BufferDesc, BufferUse, Format, Memory};
-use tressfx_core::pass::Command;
+use tressfx_core::backend::{BufferDesc, Format, Memory, Owner, ReadBack, TextureDesc};
+use tressfx_core::error::Error;
+use tressfx_core::pass::{Command, PassList};
 
-use super::subject::{Subject, noise};
+use super::subject::{Describe, Subject, noise};
+
+/// Buffers of every kind.
+const KINDS: [Describe; 3] = [BufferDesc::storage, BufferDesc::uniform, BufferDesc::indirect];
 
 pub(super) fn uploads_take_effect_in_the_order_of_the_list(t: &mut Subject) {
     let values = t.zeros(4);
@@ -57,7 +61,7 @@ pub(super) fn clears_and_uploads_take_turns(t: &mut Subject) {
 pub(super) fn copies_begin_and_end_at_their_offsets(t: &mut Subject) {
     let src = t.storage(&[1u32, 2, 3, 4, 5]);
     let dst = t.storage(&[10u32, 20, 30, 40, 50]);
-    t.list.commands.push(Command::Copy { src, src_offset: 8, dst, dst_offset: 4, bytes: 12 });
+    t.list.push(Command::Copy { src, src_offset: 8, dst, dst_offset: 4, bytes: 12 });
     assert_eq!(t.words(dst, 5), [10, 3, 4, 5, 50]);
     assert_eq!(t.words(src, 5), [1, 2, 3, 4, 5], "a copy leaves its source");
 }
@@ -90,23 +94,73 @@ pub(super) fn a_read_back_has_its_place_in_the_list(t: &mut Subject) {
     assert_eq!((t.read_words(before), t.read_words(after)), (vec![1], vec![2]));
 }
 
+pub(super) fn appended_commands_follow_with_their_bytes(t: &mut Subject) {
+    let [values, copy] = [t.zeros(4), t.zeros(4)];
+    t.list.upload(values, 0, &[1u32, 2, 3, 4]);
+    let mut other = PassList::new();
+    other.copy(values, copy, 16);
+    other.upload(values, 4, &[20u32, 30]);
+    let inner = other.read_buffer(values, 0, 16);
+    t.list.append(&other);
+    t.list.upload(values, 0, &[9u32]);
+    assert_eq!(t.read_words(inner), [1, 20, 30, 4]);
+    assert_eq!(t.words(copy, 4), [1, 2, 3, 4]);
+    assert_eq!(t.words(values, 4), [9, 20, 30, 4]);
+}
+
+pub(super) fn what_was_given_up_is_unknown(t: &mut Subject) {
+    let values = t.storage(&[5u32, 6]);
+    let tickets = [0, 4].map(|offset| t.list.read_buffer(values, offset, 4));
+    t.run();
+    t.backend.give_up(tickets[0]);
+    assert_eq!(t.backend.read(tickets[0]), ReadBack::Unknown);
+    assert_eq!(t.read_words(tickets[1]), [6]);
+    t.backend.give_up(tickets[1]);
+    assert_eq!(t.backend.read(tickets[1]), ReadBack::Unknown, "given up too late");
+}
+
+pub(super) fn what_fails_half_way_is_freed(t: &mut Subject) {
+    let before = t.zeros(8);
+    let bytes = t.backend.memory().bytes;
+    let made = Owner::build(&mut *t.backend, |backend| {
+        backend.create_buffer(&BufferDesc::storage("suite.first", 1024))?;
+        backend.create_texture(&TextureDesc::new("suite.second", [8, 8], Format::Rgba8))?;
+        backend.create_buffer(&BufferDesc::storage("suite.odd", 3))
+    });
+    assert!(matches!(made, Err(Error::Rule { .. })), "three bytes are no buffer");
+    assert_eq!(t.backend.memory().bytes, bytes);
+    t.list.clear(before, 0, 32);
+    t.run();
+}
+
+pub(super) fn a_list_that_breaks_a_rule_does_nothing(t: &mut Subject) {
+    let values = t.storage(&[1u32, 2, 3, 4]);
+    t.run();
+    t.list.upload(values, 0, &[9u32; 4]);
+    let ticket = t.list.read_buffer(values, 0, 16);
+    t.list.clear(values, 0, 20);
+    t.assert_refused("20 bytes from byte 0 on, it has 16");
+    assert_eq!(t.backend.read(ticket), ReadBack::Unknown);
+    assert_eq!(t.words(values, 4), [1, 2, 3, 4], "what came before the mistake was not done either");
+}
+
 pub(super) fn a_read_back_is_given_once(t: &mut Subject) {
     let values = t.storage(&[5u32]);
     let ticket = t.list.read_buffer(values, 0, 4);
     assert_eq!(t.read_words(ticket), [5]);
-    assert_eq!(t.backend.read(ticket), None);
+    assert_eq!(t.backend.read(ticket), ReadBack::Unknown);
 }
 
 pub(super) fn a_ticket_that_nobody_ran_gives_nothing(t: &mut Subject) {
     let values = t.zeros(1);
     let ticket = t.list.read_buffer(values, 0, 4);
-    assert_eq!(t.backend.read(ticket), None);
+    assert_eq!(t.backend.read(ticket), ReadBack::Unknown);
 }
 
 pub(super) fn new_buffers_are_zero(t: &mut Subject) {
-    for usage in [BufferUse::Storage, BufferUse::Uniform, BufferUse::Indirect] {
-        let fresh = t.buffer(16_000, usage);
-        assert_eq!(t.words(fresh, 16_000), [0; 16_000], "{usage:?}");
+    for desc in KINDS {
+        let fresh = t.buffer(16_000, desc);
+        assert_eq!(t.words(fresh, 16_000), [0; 16_000]);
     }
 }
 
@@ -170,8 +224,7 @@ pub(super) fn memory_remembers_its_peak(t: &mut Subject) {
 }
 
 pub(super) fn the_smallest_buffers_can_be_made(t: &mut Subject) {
-    for usage in [BufferUse::Storage, BufferUse::Uniform, BufferUse::Indirect] {
-        let desc = BufferDesc { label: "suite.smallest", bytes: 4, usage };
-        t.backend.create_buffer(&desc).unwrap_or_else(|error| panic!("{usage:?}: {error}"));
+    for desc in KINDS.map(|desc| desc("suite.smallest", 4)) {
+        t.backend.create_buffer(&desc).unwrap_or_else(|error| panic!("{desc:?}: {error}"));
     }
 }

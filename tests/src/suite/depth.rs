@@ -1,9 +1,9 @@
 //! Depth: which fragments pass, in both orders, and what stays for those that follow.
 
-use tressfx_core::backend::{Blend, Depth, DepthOrder, Format, Kernel};
+use tressfx_core::backend::{Blend, Depth, DepthOrder, Format};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Draw, Load, RasterPass};
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{RasterPipeline, ShaderSource};
 
 use super::subject::{Subject, draw, source};
 
@@ -23,7 +23,7 @@ const LAYER: ShaderSource = source(
 struct Screen {
     color: TextureId,
     depth: TextureId,
-    kernel: Kernel,
+    pipeline: RasterPipeline,
     order: DepthOrder,
 }
 
@@ -32,7 +32,7 @@ impl Screen {
         Self {
             color: t.texture([3, 3], Format::Rgba8),
             depth: t.texture([3, 3], Format::Depth32F),
-            kernel: t.raster(&LAYER, &[(Format::Rgba8, Blend::Replace)], Depth::TestWrite(order)),
+            pipeline: t.raster(&LAYER, &[(Format::Rgba8, Blend::Replace)], Depth::TestWrite(order)),
             order,
         }
     }
@@ -41,14 +41,14 @@ impl Screen {
     fn layer(&self, t: &mut Subject, brightness: u8, depth: f32) -> Draw {
         let color = [f32::from(brightness) / 255.0; 4];
         let layer = t.uniform(&[color, [depth; 4]]);
-        draw(&self.kernel, &[("layer", layer.into())], 3)
+        draw(&self.pipeline, &[("layer", layer.into())], 3)
     }
 
     /// A pass of layers at these depths, the first of brightness `first`.
     fn pass(&self, t: &mut Subject, loads: (Load<[f32; 4]>, Load<f32>), first: u8, depths: &[f32]) {
-        let draws = (first..).zip(depths).map(|(i, &depth)| self.layer(t, i, depth)).collect();
-        let (colors, depth) = (vec![(self.color, loads.0)], Some((self.depth, loads.1)));
-        t.list.raster(RasterPass { label: "suite.layers", colors, depth, draws });
+        let mut pass = RasterPass::new("suite.layers").color(self.color, loads.0).depth(self.depth, loads.1);
+        pass.draws = (first..).zip(depths).map(|(i, &depth)| self.layer(t, i, depth)).collect();
+        t.list.raster(pass);
     }
 
     /// As [`pass`](Self::pass) on a fresh screen; brightness and depth of what is seen.
@@ -97,6 +97,19 @@ pub(super) fn equal_passes_in_reverse_order(t: &mut Subject) {
     assert_eq!(screen.seen(t, &[0.0]), (1, 0.0), "as far as the frame was cleared to");
 }
 
+pub(super) fn tested_alone_depth_stays(t: &mut Subject) {
+    for (order, wall, near, far) in [(DepthOrder::Standard, 0.5, 0.25, 0.75), (DepthOrder::Reverse, 0.5, 0.75, 0.25)] {
+        let screen = Screen::new(t, order);
+        screen.pass(t, (Load::Clear([0.0; 4]), Load::Clear(order.far())), 1, &[wall]);
+        let pipeline = t.raster(&LAYER, &[(Format::Rgba8, Blend::Replace)], Depth::Test(order));
+        let tested = Screen { pipeline, ..screen };
+        tested.pass(t, (Load::Keep, Load::Keep), 2, &[near, far]);
+        assert_eq!(tested.look(t), (2, wall), "{order:?}: the far one is hidden, the near one is not written");
+        tested.pass(t, (Load::Keep, Load::Keep), 4, &[wall]);
+        assert_eq!(tested.look(t), (4, wall), "{order:?}: equal passes");
+    }
+}
+
 pub(super) fn off_takes_the_last(t: &mut Subject) {
     let kernel = t.raster(&LAYER, &[(Format::Rgba8, Blend::Replace)], Depth::Off);
     let color = t.texture([3, 3], Format::Rgba8);
@@ -139,8 +152,7 @@ pub(super) fn depth_alone_is_drawn(t: &mut Subject) {
     );
     let kernel = t.raster(&DEPTH_ONLY, &[], Depth::TestWrite(DepthOrder::Standard));
     let screen = Screen::new(t, DepthOrder::Standard);
-    let depth = Some((screen.depth, Load::Clear(1.0)));
-    t.list.raster(RasterPass { label: "suite.depth", colors: Vec::new(), depth, draws: vec![draw(&kernel, &[], 3)] });
+    t.list.raster(RasterPass::new("suite.depth").depth(screen.depth, Load::Clear(1.0)).draw(draw(&kernel, &[], 3)));
     screen.pass(t, (Load::Clear([0.0; 4]), Load::Keep), 1, &[0.75, 0.25, 0.3]);
     assert_eq!(screen.look(t), (2, 0.25));
 }

@@ -1,9 +1,9 @@
 //! What has to wait for what, among compute passes, copies and the CPU. The shaders read in another order than they write, so
 //! that what does not wait reads what is not there yet.
 
-use tressfx_core::backend::{BufferUse, Kernel};
+use tressfx_core::backend::BufferDesc;
 use tressfx_core::id::BufferId;
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{Kernel, ShaderSource};
 
 use super::kernels::{ADD_ONE, TIMES_3_PLUS_1, TURN, stepped, turned};
 use super::subject::{Subject, noise, source};
@@ -200,21 +200,21 @@ const TALLY: ShaderSource = source(
 
 pub(super) fn compute_writes_the_number_of_groups(t: &mut Subject) {
     let (count, tally) = (t.compute(&COUNT_GROUPS), t.compute(&TALLY));
-    let counts = t.buffer(4, BufferUse::Indirect);
+    let counts = t.buffer(4, BufferDesc::indirect);
     let wanted = t.uniform(&[5u32, 3, 2, 0]);
     let total = t.zeros(1);
     t.dispatch(&count, &[("wanted", wanted.into()), ("counts", counts.into())], [1; 3]);
-    t.list.compute_indirect(&tally, &tally.bind(&[("tally", total.into())]), counts, 4);
+    t.indirect(&tally, &[("tally", total.into())], counts, 4);
     assert_eq!(t.words(total, 1), [30]);
 }
 
 pub(super) fn the_number_of_groups_is_read_before_it_changes(t: &mut Subject) {
     let (count, tally) = (t.compute(&COUNT_GROUPS), t.compute(&TALLY));
-    let counts = t.filled(&[0u32, 7, 1, 1], BufferUse::Indirect);
+    let counts = t.filled(&[0u32, 7, 1, 1], BufferDesc::indirect);
     let wanted = t.uniform(&[11u32, 1, 1, 0]);
     let totals = [t.zeros(1), t.zeros(1), t.zeros(1)];
     let run = |t: &mut Subject, total: BufferId| {
-        t.list.compute_indirect(&tally, &tally.bind(&[("tally", total.into())]), counts, 4);
+        t.indirect(&tally, &[("tally", total.into())], counts, 4);
     };
     run(t, totals[0]);
     t.dispatch(&count, &[("wanted", wanted.into()), ("counts", counts.into())], [1; 3]);
@@ -226,9 +226,9 @@ pub(super) fn the_number_of_groups_is_read_before_it_changes(t: &mut Subject) {
 
 pub(super) fn no_groups_run_nothing(t: &mut Subject) {
     let tally = t.compute(&TALLY);
-    let counts = t.filled(&[0u32, 4, 4], BufferUse::Indirect);
+    let counts = t.filled(&[0u32, 4, 4], BufferDesc::indirect);
     let total = t.storage(&[9u32]);
-    t.list.compute_indirect(&tally, &tally.bind(&[("tally", total.into())]), counts, 0);
+    t.indirect(&tally, &[("tally", total.into())], counts, 0);
     t.dispatch(&tally, &[("tally", total.into())], [0, 1, 1]);
     assert_eq!(t.words(total, 1), [9]);
 }
@@ -236,8 +236,8 @@ pub(super) fn no_groups_run_nothing(t: &mut Subject) {
 pub(super) fn counts_are_storage_as_well(t: &mut Subject) {
     let kernel = t.compute(&TURN);
     let words = noise(64, 15);
-    let counts = t.filled(&words, BufferUse::Indirect);
-    let output = t.buffer(64, BufferUse::Indirect);
+    let counts = t.filled(&words, BufferDesc::indirect);
+    let output = t.buffer(64, BufferDesc::indirect);
     t.dispatch(&kernel, &[("input", counts.into()), ("output", output.into())], [1; 3]);
     assert_eq!(t.words(output, 64), turned(&words));
 }

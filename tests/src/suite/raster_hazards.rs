@@ -1,9 +1,9 @@
 //! What has to wait for what, where pictures are drawn.
 
-use tressfx_core::backend::{Blend, Depth, DepthOrder, Format, Kernel};
+use tressfx_core::backend::{Blend, Depth, DepthOrder, Format};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Load, RasterPass};
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{Kernel, RasterPipeline, ShaderSource};
 
 use super::kernels::{LOAD, PAINT, PULL, TIMES_3_PLUS_1, TURN, stepped, turned};
 use super::subject::{Subject, draw, noise, source};
@@ -18,11 +18,11 @@ fn canvas(t: &mut Subject) -> TextureId {
     t.texture([EDGE, EDGE], Format::Rgba8)
 }
 
-fn painter(t: &mut Subject, source: &ShaderSource) -> Kernel {
+fn painter(t: &mut Subject, source: &ShaderSource) -> RasterPipeline {
     t.raster(source, &[(Format::Rgba8, Blend::Replace)], Depth::Off)
 }
 
-fn paint(t: &mut Subject, kernel: &Kernel, colors: BufferId, target: TextureId) {
+fn paint(t: &mut Subject, kernel: &RasterPipeline, colors: BufferId, target: TextureId) {
     let vertices = if kernel.label() == PULL.label { 6 * COUNT as u32 } else { 3 };
     t.draw(target, NOTHING, vec![draw(kernel, &[("colors", colors.into())], vertices)]);
 }
@@ -116,7 +116,7 @@ const CHANGE: ShaderSource = source(
     }",
 );
 
-fn change(t: &mut Subject, kernel: &Kernel, values: BufferId, target: TextureId) {
+fn change(t: &mut Subject, kernel: &RasterPipeline, values: BufferId, target: TextureId) {
     t.draw(target, NOTHING, vec![draw(kernel, &[("values", values.into())], 3)]);
 }
 
@@ -231,14 +231,8 @@ const SLOPE: ShaderSource = source(
     @fragment fn fragment() {}",
 );
 
-fn slope(t: &mut Subject, kernel: &Kernel, depth: TextureId) {
-    let draws = vec![draw(kernel, &[], 3)];
-    t.list.raster(RasterPass {
-        label: "suite.depth",
-        colors: Vec::new(),
-        depth: Some((depth, Load::Clear(1.0))),
-        draws,
-    });
+fn slope(t: &mut Subject, kernel: &RasterPipeline, depth: TextureId) {
+    t.list.raster(RasterPass::new("suite.depth").depth(depth, Load::Clear(1.0)).draw(draw(kernel, &[], 3)));
 }
 
 fn sloped() -> Vec<f32> {

@@ -2,7 +2,7 @@
 
 use std::thread;
 
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
+use tressfx_core::backend::{BufferDesc, Run};
 use tressfx_core::pass::PassList;
 
 use super::kernels::{ADD_ONE, TIMES_3_PLUS_1};
@@ -62,17 +62,17 @@ pub(super) fn backends_run_on_two_threads_at_once(t: &mut Subject) {
     });
 }
 
-fn made(backend: &mut dyn Backend) -> tressfx_core::id::BufferId {
-    backend.create_buffer(&BufferDesc { label: "suite.word", bytes: 4, usage: BufferUse::Storage }).expect("a buffer")
+fn made(backend: &mut dyn Run) -> tressfx_core::id::BufferId {
+    backend.create_buffer(&BufferDesc::storage("suite.word", 4)).expect("a buffer")
 }
 
-fn write(backend: &mut dyn Backend, values: tressfx_core::id::BufferId, word: u32) {
+fn write(backend: &mut dyn Run, values: tressfx_core::id::BufferId, word: u32) {
     let mut list = PassList::new();
     list.upload(values, 0, &[word]);
     backend.run(&list).expect("the list runs");
 }
 
-fn read(backend: &mut dyn Backend, values: tressfx_core::id::BufferId) -> u32 {
+fn read(backend: &mut dyn Run, values: tressfx_core::id::BufferId) -> u32 {
     let mut list = PassList::new();
     let ticket = list.read_buffer(values, 0, 4);
     bytemuck::pod_read_unaligned(&crate::run_and_read(backend, &list, ticket))

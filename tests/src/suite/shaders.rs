@@ -1,7 +1,7 @@
 //! What shaders rely on: what they were specialised on, what they are bound to, and where they find themselves.
 
-use tressfx_core::backend::{Blend, BufferUse, Depth, Format};
-use tressfx_core::pass::{Grid, Load};
+use tressfx_core::backend::{Blend, Depth, Format};
+use tressfx_core::pass::{Draw, Grid, Load};
 use tressfx_core::shader::{ShaderSource, Specialization};
 
 use super::kernels::LOAD;
@@ -281,8 +281,7 @@ const PLACES: ShaderSource = source(
 pub(super) fn vertices_and_instances_are_counted(t: &mut Subject) {
     let kernel = t.raster(&PLACES, &[(Format::Rgba8, Blend::Replace)], Depth::Off);
     let target = t.texture([8, 8], Format::Rgba8);
-    let mut cells = draw(&kernel, &[], 5 * 6);
-    cells.instances = 7;
+    let cells = Draw::new(&kernel, &kernel.bind(&[]).expect("nothing is bound"), 5 * 6, 7);
     t.draw(target, Load::Clear([0.0; 4]), vec![cells]);
     let texel = |x: u32, y: u32| if x < 5 && y < 7 { (x + 1) | (y + 1) << 8 | 0xff00_0000 } else { 0 };
     let expected: Vec<u32> = (0..64).map(|i| texel(i % 8, i / 8)).collect();
@@ -354,7 +353,7 @@ pub(super) fn up_is_up_for_those_who_load_it(t: &mut Subject) {
     let kernel = t.raster(&CORNERS, &[(Format::Rgba8, Blend::Replace)], Depth::Off);
     let loader = t.compute(&LOAD);
     let target = t.texture([32, 32], Format::Rgba8);
-    let output = t.buffer(32 * 32, BufferUse::Storage);
+    let output = t.zeros(32 * 32);
     t.draw(target, Load::Clear([0.0; 4]), vec![draw(&kernel, &[], 3)]);
     t.dispatch(&loader, &[("picture", target.into()), ("output", output.into())], [16, 1, 1]);
     assert_eq!(t.words(output, 32 * 32), corners());

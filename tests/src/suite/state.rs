@@ -1,9 +1,9 @@
 //! The fixed state of raster passes: blending, targets, faces, and how a pass begins.
 
-use tressfx_core::backend::{Blend, Depth, Format, Kernel};
+use tressfx_core::backend::{Blend, Depth, Format};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Draw, Load, RasterPass};
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{RasterPipeline, ShaderSource};
 
 use super::formats::{FILL, assert_rounds_to};
 use super::kernels::PAINT;
@@ -12,7 +12,7 @@ use super::subject::{Subject, draw, noise, source};
 const SIZE: [u32; 2] = [32, 32];
 const COUNT: usize = 32 * 32;
 
-fn fill(t: &mut Subject, kernel: &Kernel, color: [f32; 4]) -> Draw {
+pub(super) fn fill(t: &mut Subject, kernel: &RasterPipeline, color: [f32; 4]) -> Draw {
     let uniform = t.uniform(&color);
     draw(kernel, &[("color", uniform.into())], 3)
 }
@@ -53,6 +53,50 @@ pub(super) fn over_lays_premultiplied_colour_over(t: &mut Subject) {
             assert!((found[c] - expected).abs() <= 1.0 / 255.0, "{above:?} over {below:?} is not {found:?}");
         }
     }
+}
+
+/// Draws layers whose sums and products eight bits hold exactly, and gives the texel that comes of it.
+fn blended(t: &mut Subject, blend: Blend, format: Format) -> Vec<u8> {
+    let pipeline = t.raster(&FILL, &[(format, blend)], Depth::Off);
+    let target = t.texture([3, 3], format);
+    let layer = fill(t, &pipeline, ABOVE);
+    t.draw(target, Load::Clear(BELOW), vec![layer]);
+    t.texels(target)
+}
+
+/// What blends with what; each channel in another relation.
+const BELOW: [f32; 4] = [0.2, 0.8, 1.0, 0.4];
+const ABOVE: [f32; 4] = [0.6, 0.1, 0.2, 0.5];
+const BLENDABLE: [Format; 6] =
+    [Format::Rgba8, Format::Bgra8, Format::Rgba16F, Format::Rgba8Srgb, Format::Rg16F, Format::R16F];
+
+fn blends(t: &mut Subject, blend: Blend, each: impl Fn(f32, f32) -> f32) {
+    let expected = std::array::from_fn(|c| each(ABOVE[c], BELOW[c]));
+    for format in BLENDABLE {
+        let found = blended(t, blend, format);
+        assert_rounds_to(format, &found, expected);
+    }
+}
+
+pub(super) fn add_adds(t: &mut Subject) {
+    blends(t, Blend::Add, |above, below| above + below);
+}
+
+pub(super) fn add_of_bytes_ends_at_one(t: &mut Subject) {
+    let found = blended(t, Blend::Add, Format::Rgba8);
+    assert_eq!(found, [204, 230, 255, 230].repeat(9), "0.2 and 1 are 1");
+}
+
+pub(super) fn multiply_multiplies(t: &mut Subject) {
+    blends(t, Blend::Multiply, |above, below| above * below);
+}
+
+pub(super) fn min_takes_the_smaller(t: &mut Subject) {
+    blends(t, Blend::Min, f32::min);
+}
+
+pub(super) fn max_takes_the_larger(t: &mut Subject) {
+    blends(t, Blend::Max, f32::max);
 }
 
 fn over_in(t: &mut Subject, format: Format) {
@@ -171,8 +215,10 @@ pub(super) fn targets_have_their_own_colours(t: &mut Subject) {
     let targets = formats.map(|(format, _)| t.texture([7, 3], format));
     let load = [0.0, 0.0, 1.0, 1.0];
     let pass = |targets: &[TextureId], draws: Vec<Draw>| {
-        let colors = targets.iter().map(|&target| (target, Load::Clear(load))).collect();
-        RasterPass { label: "suite.targets", colors, depth: None, draws }
+        let mut pass = RasterPass::new("suite.targets");
+        pass.colors = targets.iter().map(|&target| (target, Load::Clear(load))).collect();
+        pass.draws = draws;
+        pass
     };
     t.list.raster(pass(&targets, vec![draw(&kernel, &[], 3)]));
     let expected = [[1.0, 0.0, 0.0, 0.5], [0.0, 1.0, 0.5, 1.0], [0.0, 0.0, 2.5, 1.0]];
@@ -186,11 +232,8 @@ pub(super) fn targets_have_their_own_colours(t: &mut Subject) {
 
 pub(super) fn targets_begin_each_in_its_own_way(t: &mut Subject) {
     let targets = [(); 2].map(|()| t.texture([3, 3], Format::Rgba8));
-    let begin = |loads: [Load<[f32; 4]>; 2]| RasterPass {
-        label: "suite.targets",
-        colors: targets.into_iter().zip(loads).collect(),
-        depth: None,
-        draws: Vec::new(),
+    let begin = |[one, other]: [Load<[f32; 4]>; 2]| {
+        RasterPass::new("suite.targets").color(targets[0], one).color(targets[1], other)
     };
     t.list.raster(begin([Load::Clear([0.2; 4]), Load::Clear([0.4; 4])]));
     t.list.raster(begin([Load::Keep, Load::Clear([0.6; 4])]));
@@ -201,9 +244,8 @@ pub(super) fn targets_begin_each_in_its_own_way(t: &mut Subject) {
 pub(super) fn no_vertices_and_no_instances_draw_nothing(t: &mut Subject) {
     let kernel = t.raster(&FILL, &[(Format::Rgba8, Blend::Replace)], Depth::Off);
     let target = t.texture([2, 2], Format::Rgba8);
-    let mut none = fill(t, &kernel, [1.0; 4]);
-    t.draw(target, Load::Clear([0.2; 4]), vec![Draw { instances: 0, ..none.clone() }]);
-    none.vertices = 0;
-    t.draw(target, Load::Keep, vec![none]);
+    let bindings = fill(t, &kernel, [1.0; 4]).bindings;
+    t.draw(target, Load::Clear([0.2; 4]), vec![Draw::new(&kernel, &bindings, 3, 0)]);
+    t.draw(target, Load::Keep, vec![Draw::new(&kernel, &bindings, 0, 1)]);
     assert_eq!(t.texels(target), [51; 16]);
 }

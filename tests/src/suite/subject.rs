@@ -1,17 +1,15 @@
 //! The backend under test, and words for what most cases do with it.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use bytemuck::NoUninit;
-use tressfx_core::backend::{
-    Backend, Blend, BufferDesc, BufferUse, ComputeDesc, Depth, Format, Kernel, RasterDesc, TextureDesc,
-};
-use tressfx_core::id::{BufferId, Resource, TextureId};
+use tressfx_core::backend::{Blend, BufferDesc, ComputeDesc, Depth, Format, RasterDesc, Run, TextureDesc};
+use tressfx_core::error::{Error, Label};
+use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Draw, Grid, Load, PassList, RasterPass, Ticket};
-use tressfx_core::shader::{Module, Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Module, RasterPipeline, Shader, ShaderSource, Specialization};
 
-use super::{Make, words};
+use super::Make;
 
 /// What the shaders of the suite may import.
 const LIBRARY: &[Module] = &[("cover", include_str!("cover.wgsl"))];
@@ -21,54 +19,62 @@ pub(super) const fn source(label: &'static str, text: &'static str) -> ShaderSou
     ShaderSource { label, root: ("root", text), library: LIBRARY }
 }
 
+/// What describes a buffer of a size: one of the constructors of [`BufferDesc`].
+pub(super) type Describe = fn(Label, u64) -> BufferDesc;
+
 /// A backend, and the list that it will run next.
 pub(crate) struct Subject<'a> {
-    pub(crate) backend: Box<dyn Backend>,
+    pub(crate) backend: Box<dyn Run>,
     pub(super) list: PassList,
     pub(super) make: Make<'a>,
 }
 
 impl<'a> Subject<'a> {
-    pub(super) fn new(backend: Box<dyn Backend>, make: Make<'a>) -> Self {
+    pub(super) fn new(backend: Box<dyn Run>, make: Make<'a>) -> Self {
         Self { backend, list: PassList::new(), make }
     }
 
     /// Another backend of the same kind.
-    pub(super) fn another(&self) -> Box<dyn Backend> {
+    pub(super) fn another(&self) -> Box<dyn Run> {
         (self.make)().expect("a second backend")
     }
 
     /// A buffer of zeros.
-    pub(super) fn buffer(&mut self, words: usize, usage: BufferUse) -> BufferId {
-        let desc = BufferDesc { label: "suite.buffer", bytes: 4 * words as u64, usage };
-        self.backend.create_buffer(&desc).expect("a buffer")
+    pub(super) fn buffer(&mut self, words: usize, desc: Describe) -> BufferId {
+        self.backend.create_buffer(&desc("suite.buffer", 4 * words as u64)).expect("a buffer")
     }
 
     /// A storage buffer of zeros.
     pub(super) fn zeros(&mut self, words: usize) -> BufferId {
-        self.buffer(words, BufferUse::Storage)
+        self.buffer(words, BufferDesc::storage)
     }
 
     /// A storage buffer that is filled by the list.
     pub(super) fn storage<T: NoUninit>(&mut self, data: &[T]) -> BufferId {
-        self.filled(data, BufferUse::Storage)
+        self.filled(data, BufferDesc::storage)
     }
 
     /// A uniform buffer that is filled by the list.
     pub(super) fn uniform<T: NoUninit>(&mut self, data: &[T]) -> BufferId {
-        self.filled(data, BufferUse::Uniform)
+        self.filled(data, BufferDesc::uniform)
     }
 
     /// A buffer that is filled by the list.
-    pub(super) fn filled<T: NoUninit>(&mut self, data: &[T], usage: BufferUse) -> BufferId {
-        let buffer = self.buffer(size_of_val(data) / 4, usage);
+    pub(super) fn filled<T: NoUninit>(&mut self, data: &[T], desc: Describe) -> BufferId {
+        let buffer = self.buffer(size_of_val(data) / 4, desc);
         self.list.upload(buffer, 0, data);
         buffer
     }
 
     /// A texture.
     pub(super) fn texture(&mut self, size: [u32; 2], format: Format) -> TextureId {
-        self.backend.create_texture(&TextureDesc { label: "suite.texture", size, format }).expect("a texture")
+        self.backend.create_texture(&TextureDesc::new("suite.texture", size, format)).expect("a texture")
+    }
+
+    /// A texture that compute passes write too.
+    pub(super) fn storage_texture(&mut self, size: [u32; 2], format: Format) -> TextureId {
+        let desc = TextureDesc::new("suite.storage_texture", size, format).storage();
+        self.backend.create_texture(&desc).expect("a texture that is written")
     }
 
     /// A compute kernel that is not specialised.
@@ -79,25 +85,37 @@ impl<'a> Subject<'a> {
     /// A compute kernel.
     pub(super) fn specialised(&mut self, source: &ShaderSource, specialization: &Specialization) -> Kernel {
         let shader = Arc::new(Shader::new(source, specialization).expect("the suite's shaders are fine"));
-        self.backend.create_compute(&ComputeDesc { shader }).expect("a compute kernel")
+        self.backend.create_compute(&ComputeDesc::new(shader)).expect("a compute kernel")
     }
 
-    /// A raster kernel.
-    pub(super) fn raster(&mut self, source: &ShaderSource, targets: &[(Format, Blend)], depth: Depth) -> Kernel {
+    /// A raster pipeline.
+    pub(super) fn raster(
+        &mut self,
+        source: &ShaderSource,
+        targets: &[(Format, Blend)],
+        depth: Depth,
+    ) -> RasterPipeline {
         let shader = Arc::new(Shader::new(source, &Specialization::new()).expect("the suite's shaders are fine"));
-        let desc = RasterDesc { shader, targets: targets.to_vec(), depth };
-        self.backend.create_raster(&desc).expect("a raster kernel")
+        let mut desc = RasterDesc::new(shader).depth(depth);
+        desc.targets = targets.to_vec();
+        self.backend.create_raster(&desc).expect("a raster pipeline")
     }
 
     /// Has the list run a kernel over groups.
-    pub(super) fn dispatch(&mut self, kernel: &Kernel, resources: &[(&str, Resource)], groups: [u32; 3]) {
-        self.list.compute(kernel, &kernel.bind(resources), Grid(groups));
+    pub(super) fn dispatch(&mut self, kernel: &Kernel, bindings: &[(&str, Binding)], groups: [u32; 3]) {
+        self.list.compute(kernel, &kernel.bind(bindings).expect("bindings"), Grid(groups));
+    }
+
+    /// Has the list run a kernel over as many groups as a buffer says.
+    pub(super) fn indirect(&mut self, kernel: &Kernel, bindings: &[(&str, Binding)], counts: BufferId, offset: u64) {
+        self.list.compute_indirect(kernel, &kernel.bind(bindings).expect("bindings"), counts, offset);
     }
 
     /// Has the list draw into one colour target.
     pub(super) fn draw(&mut self, target: TextureId, load: Load<[f32; 4]>, draws: Vec<Draw>) {
-        let colors = vec![(target, load)];
-        self.list.raster(RasterPass { label: "suite.draw", colors, depth: None, draws });
+        let mut pass = RasterPass::new("suite.draw").color(target, load);
+        pass.draws = draws;
+        self.list.raster(pass);
     }
 
     /// Runs what the list holds, and begins a new one.
@@ -108,10 +126,10 @@ impl<'a> Subject<'a> {
 
     /// What came back, after running what the list holds.
     pub(super) fn read(&mut self, ticket: Ticket) -> Vec<u8> {
-        if !self.list.commands.is_empty() {
+        if !self.list.commands().is_empty() {
             self.run();
         }
-        self.backend.read(ticket).expect("the list has run, so the bytes are there")
+        self.backend.read(ticket).ready().expect("the list has run, so the bytes are there")
     }
 
     /// As [`read`](Self::read), in words.
@@ -136,19 +154,25 @@ impl<'a> Subject<'a> {
         bytemuck::pod_collect_to_vec(&self.texels(texture))
     }
 
-    /// Has `mistake` made, and holds that it panics.
-    pub(super) fn assert_noticed(&mut self, what: &str, mistake: impl FnOnce(&mut Self)) {
-        match catch_unwind(AssertUnwindSafe(|| mistake(self))) {
-            Ok(()) => panic!("{what}: nobody noticed"),
-            Err(panic) => assert!(!words(&*panic).is_empty(), "{what}: the panic has words"),
+    /// Holds that the list is refused because of its last command, and that the answer says `what`.
+    #[track_caller]
+    pub(super) fn assert_refused(&mut self, what: &str) {
+        let list = std::mem::take(&mut self.list);
+        let last = list.commands().last().expect("a list with a mistake in it");
+        let expected = format!("command {}, {}", list.commands().len() - 1, last.name());
+        match self.backend.run(&list) {
+            Err(Error::Rule { place, message }) => {
+                assert!(place.starts_with(&expected), "{place}: {message}: not {expected}");
+                assert!(message.contains(what), "{place}: {message}: nothing of `{what}`");
+            }
+            other => panic!("{expected}: {other:?} is not the error of a broken rule"),
         }
-        self.list = PassList::new();
     }
 }
 
 /// A draw of one instance.
-pub(super) fn draw(kernel: &Kernel, resources: &[(&str, Resource)], vertices: u32) -> Draw {
-    Draw { kernel: kernel.clone(), bindings: kernel.bind(resources), vertices, instances: 1 }
+pub(super) fn draw(pipeline: &RasterPipeline, bindings: &[(&str, Binding)], vertices: u32) -> Draw {
+    Draw::new(pipeline, &pipeline.bind(bindings).expect("bindings"), vertices, 1)
 }
 
 /// Words that look random and are the same everywhere.

@@ -3,32 +3,40 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use tressfx_core::backend::{Backend, BufferDesc, Caps, ComputeDesc, Kernel, Memory, RasterDesc, TextureDesc, Timing};
+use tressfx_core::backend::{
+    Backend, BufferDesc, Caps, Catalog, ComputeDesc, Memory, RasterDesc, ReadBack, Run, TextureDesc, Timing,
+};
 use tressfx_core::error::Result;
 use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
-use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList, Ticket};
+use tressfx_core::shader::{Kernel, RasterPipeline};
 
-/// Ids, rules and refusals are those of the backend that runs nothing.
+/// Ids, rules and refusals are core's; buffers and textures are bytes.
 pub(crate) struct Copies {
-    null: NullBackend,
-    buffers: HashMap<BufferId, Vec<u8>>,
+    catalog: Catalog<Vec<u8>, Vec<u8>, ()>,
     reads: HashMap<Ticket, Vec<u8>>,
 }
 
 impl Copies {
     pub(crate) fn new() -> Self {
         let caps = Caps { compute: false, raster: false, fragment_writes: false, ..Caps::webgpu_default() };
-        Self { null: NullBackend::new(caps), buffers: HashMap::new(), reads: HashMap::new() }
+        Self { catalog: Catalog::new(caps), reads: HashMap::new() }
     }
 
     fn part(&self, buffer: BufferId, offset: u64, bytes: u64) -> Vec<u8> {
-        self.buffers[&buffer][range(offset, bytes)].to_vec()
+        self.catalog.buffer(buffer)[range(offset, bytes)].to_vec()
     }
 
     fn write(&mut self, buffer: BufferId, offset: u64, data: &[u8]) {
-        let buffer = self.buffers.get_mut(&buffer).expect("it is alive");
-        buffer[range(offset, data.len() as u64)].copy_from_slice(data);
+        self.catalog.buffer_mut(buffer)[range(offset, data.len() as u64)].copy_from_slice(data);
+    }
+
+    fn copy_to_texture(&mut self, src: BufferId, offset: u64, row_bytes: u32, dst: TextureId) {
+        let desc = *self.catalog.texture_desc(dst).expect("the list was checked");
+        let row = u64::from(desc.size[0] * desc.format.bytes());
+        let start = |y: u32| offset + u64::from(y) * u64::from(row_bytes);
+        let rows = (0..desc.size[1]).flat_map(|y| self.part(src, start(y), row));
+        *self.catalog.texture_mut(dst) = rows.collect();
     }
 }
 
@@ -38,60 +46,43 @@ fn range(offset: u64, bytes: u64) -> Range<usize> {
 
 impl Backend for Copies {
     fn caps(&self) -> &Caps {
-        self.null.caps()
+        self.catalog.caps()
     }
 
     fn create_buffer(&mut self, desc: &BufferDesc) -> Result<BufferId> {
-        let made = self.null.create_buffer(desc)?;
-        self.buffers.insert(made, vec![0; desc.bytes as usize]);
-        Ok(made)
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_buffer(desc, vec![0; desc.bytes as usize]))
     }
 
     fn create_texture(&mut self, desc: &TextureDesc) -> Result<TextureId> {
-        self.null.create_texture(desc)
+        desc.check(self.caps())?;
+        Ok(self.catalog.add_texture(desc, vec![0; desc.bytes() as usize]))
     }
 
     fn create_compute(&mut self, desc: &ComputeDesc) -> Result<Kernel> {
-        self.null.create_compute(desc)
+        desc.check(self.caps())?;
+        unreachable!("the caps have no compute passes")
     }
 
-    fn create_raster(&mut self, desc: &RasterDesc) -> Result<Kernel> {
-        self.null.create_raster(desc)
+    fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
+        desc.check(self.caps())?;
+        unreachable!("the caps have no raster passes")
     }
 
     fn destroy(&mut self, resource: Resource) {
-        self.null.destroy(resource);
-        if let Resource::Buffer(id) = resource {
-            self.buffers.remove(&id);
-        }
+        self.catalog.destroy(resource);
     }
 
     fn destroy_pipeline(&mut self, pipeline: PipelineId) {
-        self.null.destroy_pipeline(pipeline);
+        self.catalog.destroy_pipeline(pipeline);
     }
 
-    fn run(&mut self, list: &PassList) -> Result<()> {
-        self.null.run(list)?;
-        for command in &list.commands {
-            match command {
-                Command::Upload { dst, offset, data } => self.write(*dst, *offset, &list.bytes[data.clone()]),
-                Command::Clear { dst, offset, bytes } => self.write(*dst, *offset, &vec![0; *bytes as usize]),
-                Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
-                    let data = self.part(*src, *src_offset, *bytes);
-                    self.write(*dst, *dst_offset, &data);
-                }
-                Command::ReadBuffer { src, offset, bytes, ticket } => {
-                    let data = self.part(*src, *offset, *bytes);
-                    self.reads.insert(*ticket, data);
-                }
-                other => panic!("{other:?}: the caps have no passes"),
-            }
-        }
-        Ok(())
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
+        self.reads.remove(&ticket).map_or(ReadBack::Unknown, ReadBack::Ready)
     }
 
-    fn read(&mut self, ticket: Ticket) -> Option<Vec<u8>> {
-        self.reads.remove(&ticket)
+    fn give_up(&mut self, ticket: Ticket) {
+        self.reads.remove(&ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {
@@ -99,6 +90,35 @@ impl Backend for Copies {
     }
 
     fn memory(&self) -> Memory {
-        self.null.memory()
+        self.catalog.memory()
+    }
+}
+
+impl Run for Copies {
+    fn run(&mut self, list: &PassList) -> Result<()> {
+        drop(self.catalog.sweep());
+        self.catalog.check(list)?;
+        for command in list.commands() {
+            match command {
+                Command::Upload { dst, offset, data } => self.write(*dst, *offset, &list.bytes()[data.clone()]),
+                Command::Clear { dst, offset, bytes } => self.write(*dst, *offset, &vec![0; *bytes as usize]),
+                Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
+                    let data = self.part(*src, *src_offset, *bytes);
+                    self.write(*dst, *dst_offset, &data);
+                }
+                Command::CopyToTexture { src, offset, row_bytes, dst } => {
+                    self.copy_to_texture(*src, *offset, *row_bytes, *dst);
+                }
+                Command::ReadBuffer { src, offset, bytes, ticket } => {
+                    let data = self.part(*src, *offset, *bytes);
+                    self.reads.insert(*ticket, data);
+                }
+                Command::ReadTexture { src, ticket } => {
+                    self.reads.insert(*ticket, self.catalog.texture(*src).clone());
+                }
+                other => unreachable!("{other:?}: the caps have no passes"),
+            }
+        }
+        Ok(())
     }
 }

@@ -15,6 +15,9 @@ impl BufferDesc {
         if self.bytes == 0 || self.bytes % 4 != 0 {
             return Err(Error::rule(self.label, format!("{} bytes: a multiple of 4, at least 4, is", self.bytes)));
         }
+        if self.uses == BufferUses::default() {
+            return Err(Error::rule(self.label, "it has no use"));
+        }
         caps.check(self.label, &[Need::BufferBytes(self.bytes)])?;
         if self.uses.contains(BufferUses::STORAGE) {
             caps.check(self.label, &[Need::StorageBindingBytes(self.bytes)])?;
@@ -31,6 +34,9 @@ impl TextureDesc {
     pub fn check(&self, caps: &Caps) -> Result<()> {
         if self.size.contains(&0) {
             return Err(Error::rule(self.label, format!("a size of {:?}", self.size)));
+        }
+        if self.uses == TextureUses::default() {
+            return Err(Error::rule(self.label, "it has no use"));
         }
         caps.check(self.label, &[Need::TextureEdge(self.size[0].max(self.size[1]))])?;
         if self.uses.contains(TextureUses::STORAGE) && !self.format.is_storage() {

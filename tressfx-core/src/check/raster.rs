@@ -73,14 +73,11 @@ impl Known<'_> {
             Some((_, Load::Clear(depth))) if !(0.0..=1.0).contains(&depth) => {
                 Err(format!("depth is cleared to {depth}: it is from 0 to 1"))
             }
-            _ if pass
-                .colors
-                .iter()
-                .any(|(_, load)| matches!(load, Load::Clear(c) if c.iter().any(|c| !c.is_finite()))) =>
-            {
-                Err(String::from("a colour is cleared to what is not finite"))
+            _ => {
+                let clears = pass.colors.iter().zip(&targets.colors);
+                clears.into_iter().try_for_each(|((_, load), format)| clear(*load, *format))?;
+                Ok(targets)
             }
-            _ => Ok(targets),
         }
     }
 
@@ -97,6 +94,20 @@ impl Known<'_> {
             Count::Direct { .. } => Ok(()),
             Count::Indirect { buffer, offset } => self.range(buffer, offset, 16, BufferUses::INDIRECT),
         }
+    }
+}
+
+/// Whether a target of a format can be cleared so.
+fn clear(load: Load<[f32; 4]>, format: Format) -> Rule {
+    let Load::Clear(color) = load else { return Ok(()) };
+    if color.iter().any(|channel| !channel.is_finite()) {
+        return Err(String::from("a colour is cleared to what is not finite"));
+    }
+    // 2^32 is the smallest that no `u32` holds.
+    let fits = |channel: f32| (0.0..4_294_967_296.0).contains(&channel) && channel.fract() == 0.0;
+    match format.is_uint() && !fits(color[0]) {
+        true => Err(format!("{format:?} is cleared to {}, which is no unsigned integer", color[0])),
+        false => Ok(()),
     }
 }
 

@@ -127,6 +127,9 @@ impl std::ops::BitOr for Stages {
     }
 }
 
+/// The largest number of a binding that every device takes.
+const MAX_BINDING: u32 = 999;
+
 /// The slots of a module, by ascending number.
 pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<Vec<ShaderSlot>> {
     let mut slots = Vec::new();
@@ -145,6 +148,9 @@ pub(super) fn slots(label: Label, module: &naga::Module, info: &naga::valid::Mod
         let refuse = |why: &str| Error::Shader { label, message: format!("binding `{name}`: {why}") };
         if binding.group != 0 {
             return Err(refuse("only @group(0) is used"));
+        }
+        if binding.binding > MAX_BINDING {
+            return Err(refuse("its number is above 999"));
         }
         let kind = kind(module, info, handle).ok_or_else(|| refuse("no kind of binding that the contract has"))?;
         if kind == SlotKind::DepthTexture && is_sampled(module, info, handle) {
