@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_conformance::show::{Scene, Show};
 use tressfx_conformance::sim::real;
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
+use tressfx_core::backend::{Backend, BufferDesc, ReadBack, Run};
 use tressfx_core::error::Error;
 use tressfx_core::hazards;
 use tressfx_core::pass::PassList;
@@ -48,7 +48,7 @@ fn without_barriers_the_validation_layer_says_so_and_names_the_pass() {
     let Some(mut backend) = vulkan(&watched()) else { return };
     let scene = Scene::builtin("wavy:120:16", SIZE);
     backend.leave_out_barriers(true);
-    let buffer = BufferDesc { label: "test.source", bytes: 256, usage: BufferUse::Storage };
+    let buffer = BufferDesc::storage("test.source", 256);
     let [source, middle] = [0, 1].map(|_| backend.create_buffer(&buffer).unwrap());
     let mut list = PassList::new();
     list.upload(source, 0, &[7u32; 64]);
@@ -69,8 +69,9 @@ fn barriers_and_waits(scene: &Scene) -> Option<[usize; 2]> {
     show.backend.run(&list).unwrap();
     let recorded = (show.backend.barriers() - before) as usize;
     // Twice the same list: in the second, every command has the first list before it.
-    let commands = [list.commands.clone(), list.commands.clone()].concat();
-    let waits = hazards::of_list(&PassList { commands, bytes: list.bytes }).split_off(list.commands.len());
+    let mut twice = list.clone();
+    list.commands().iter().for_each(|command| twice.push(command.clone()));
+    let waits = hazards::of_list(&twice).split_off(list.commands().len());
     let waiting = waits.iter().filter(|waits| !waits.is_empty()).count();
     Some([recorded, waiting])
 }
@@ -89,7 +90,7 @@ fn a_frame_records_a_barrier_for_each_command_that_waits_and_no_other() {
 #[test]
 fn readers_of_one_buffer_do_not_wait_for_each_other() {
     let Some(mut backend) = vulkan(&watched()) else { return };
-    let buffer = BufferDesc { label: "test.read", bytes: 64, usage: BufferUse::Storage };
+    let buffer = BufferDesc::storage("test.read", 64);
     let buffer = backend.create_buffer(&buffer).unwrap();
     let mut list = PassList::new();
     list.upload(buffer, 0, &[3u32; 16]);
@@ -114,18 +115,18 @@ fn memory_that_is_not_there_is_an_error_and_the_backend_goes_on() {
     let mut made = Vec::new();
     // No machine has room for so many of the largest.
     let error = (0..4096).find_map(|_| {
-        let desc = BufferDesc { label: "test.large", bytes, usage: BufferUse::Storage };
+        let desc = BufferDesc::storage("test.large", bytes);
         backend.create_buffer(&desc).map(|id| made.push(id)).err()
     });
     let Some(error) = error else { panic!("4096 buffers of {bytes} bytes") };
     assert!(matches!(error, Error::OutOfMemory { label: "test.large", .. }), "{error}");
     assert_eq!(backend.memory().bytes, made.len() as u64 * bytes);
     made.into_iter().for_each(|id| backend.destroy(id.into()));
-    let small = backend.create_buffer(&BufferDesc { label: "test.small", bytes: 16, usage: BufferUse::Storage });
+    let small = backend.create_buffer(&BufferDesc::storage("test.small", 16));
     let mut list = PassList::new();
     let ticket = list.read_buffer(small.unwrap(), 0, 16);
     backend.run(&list).unwrap();
-    assert_eq!(backend.read(ticket).unwrap(), [0; 16]);
+    assert_eq!(backend.read(ticket), ReadBack::Ready(vec![0; 16]));
 }
 
 #[test]
