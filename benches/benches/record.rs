@@ -93,20 +93,21 @@ fn vulkan(criterion: &mut Criterion) {
         let list = Frames::new(&mut backend, grooms).steady(&mut backend);
         let device = backend.device().clone();
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(backend.queue_family());
-        // SAFETY: the device lives as long as the backend; the command buffer is never submitted, and is reset only once the
-        // backend has let go of it.
+        // SAFETY: the device lives as long as the backend; the command buffer is never submitted, and the backend is told so.
         unsafe {
             let pool = device.create_command_pool(&info, None).expect("a pool");
             let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
-            let mut commands = device.allocate_command_buffers(&info).expect("a command buffer")[0];
+            let commands = device.allocate_command_buffers(&info).expect("a command buffer")[0];
             let mut record = || {
                 device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).expect("a reset");
                 device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default()).expect("a beginning");
+                let before = backend.recorded();
+                let mut encoder = Commands::new(&backend, commands);
                 let start = Instant::now();
-                backend.record(&mut commands, &list).expect("a recording");
+                backend.record(&mut encoder, &list).expect("a recording");
                 let time = start.elapsed();
                 device.end_command_buffer(commands).expect("an end");
-                backend.wait_idle().expect("the recording is let go of");
+                backend.discard(before);
                 time
             };
             group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {

@@ -1,8 +1,8 @@
 //! The hair inside of the engine: its backend on the engine's device, and the engine's images in it.
 
 use anyhow::Result;
-use tressfx_backend_vulkan::{Enabled, Import, VulkanBackend, VulkanDesc};
-use tressfx_core::backend::{Format, TextureDesc};
+use tressfx_backend_vulkan::{Enabled, EngineUse, VulkanBackend, VulkanDesc};
+use tressfx_core::backend::{Format, TextureDesc, TextureUses};
 use tressfx_render::Targets;
 
 use crate::engine::Engine;
@@ -10,34 +10,30 @@ use crate::gpu::Gpu;
 
 /// The hair on the engine's device.
 pub(crate) fn share(engine: &Gpu) -> VulkanBackend {
-    let desc = VulkanDesc {
-        instance: engine.instance.clone(),
-        physical_device: engine.physical_device,
-        device: engine.device.clone(),
-        queue: engine.queue,
-        queue_family: engine.queue_family,
-        allocator: engine.allocator.clone(),
-        // The engine enabled nothing that is not required; so the shaders keep their accesses within bounds by themselves.
-        enabled: Enabled { debug_utils: engine.is_watched(), ..Enabled::default() },
-        pipeline_cache: None,
-    };
+    let (queue, allocator) = ((engine.queue, engine.queue_family), engine.allocator.clone());
+    let (instance, device) = (engine.instance.clone(), engine.device.clone());
+    let mut desc = VulkanDesc::new(instance, engine.physical_device, device, queue, allocator);
+    // The engine enabled nothing that is not required; so the shaders keep their accesses within bounds by themselves.
+    desc.enabled = Enabled { debug_utils: engine.is_watched(), ..Enabled::default() };
     // SAFETY: they belong together and outlive the backend, the device has what is required, and one thread does
-    // everything. All command buffers are submitted, in order.
+    // everything. The engine waits for its last frame before the backend goes.
     unsafe { VulkanBackend::new(desc) }
 }
 
 /// The engine's images, with the use in which the hair finds them and the use in which it leaves them.
 pub(crate) fn import(gpu: &mut VulkanBackend, engine: &Engine, size: [u32; 2]) -> Result<Targets> {
-    let light = TextureDesc { label: "engine.light", size, format: Format::Rgba16F };
-    let depth = TextureDesc { label: "engine.depth", size, format: Format::Depth32F };
+    // As the images were made.
+    let uses = TextureUses::TARGET | TextureUses::SAMPLED;
+    let light = TextureDesc::new("engine.light", size, Format::Rgba16F).with_uses(uses);
+    let depth = TextureDesc::new("engine.depth", size, Format::Depth32F).with_uses(uses);
     // SAFETY: they are images of this device, made with these sizes and formats, to be drawn to and sampled; and they live
     // until the backend is gone.
     unsafe {
         Ok(Targets {
             // The engine has just drawn to it, and samples it next.
-            color: gpu.import_texture(engine.light.image, &light, Import::COLOR_TARGET, Import::SAMPLED)?,
+            color: gpu.import_texture(engine.light.image, &light, EngineUse::COLOR_TARGET, EngineUse::SAMPLED)?,
             // It stays a depth target: the engine might go on drawing.
-            depth: gpu.import_texture(engine.depth.image, &depth, Import::DEPTH_TARGET, Import::DEPTH_TARGET)?,
+            depth: gpu.import_texture(engine.depth.image, &depth, EngineUse::DEPTH_TARGET, EngineUse::DEPTH_TARGET)?,
         })
     }
 }

@@ -11,6 +11,7 @@ mod pipeline;
 mod sets;
 
 use anyhow::{Result, ensure};
+use tressfx_backend_vulkan::Commands;
 use tressfx_core::backend::{Backend, Format, Record};
 use tressfx_examples::{Args, Hair, Stage, head};
 
@@ -31,11 +32,13 @@ fn main() -> Result<()> {
 
     for frame in 1..=args.frames {
         let head = head(f64::from(frame) * DT);
-        let mut commands = engine.begin(&stage.shade(&head))?;
-        // The frame before the last is over, and what it used may go.
-        gpu.retire(engine.finished());
+        let commands = engine.begin(&stage.shade(&head))?;
+        // SAFETY: the engine has waited for the frame before the last: it is over, and what it used may go.
+        unsafe { gpu.retire(engine.finished()) };
         engine.draw_stage(commands);
-        gpu.record(&mut commands, hair.frame(DT, head, &stage.view, &stage.lights)?)?;
+        // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
+        let mut hair_commands = unsafe { Commands::new(&gpu, commands) };
+        gpu.record(&mut hair_commands, hair.frame(DT, head, &stage.view, &stage.lights)?)?;
         engine.develop(commands);
         engine.submit(commands, gpu.recorded())?;
         hair.observe(&mut gpu)?;

@@ -18,7 +18,7 @@ use engine::Engine;
 use gpu::Gpu;
 use inside::{import, share};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::VulkanBackend;
+use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record, Run};
 use tressfx_core::view::Pose;
 use tressfx_examples::{Hair, Stage, head};
@@ -39,10 +39,13 @@ fn engine(stage: &Stage) -> Option<(Engine, VulkanBackend)> {
 }
 
 fn frame(engine: &mut Engine, gpu: &mut VulkanBackend, hair: &mut Hair, stage: &Stage, head: Pose) {
-    let mut commands = engine.begin(&stage.shade(&head)).unwrap();
-    gpu.retire(engine.finished());
+    let commands = engine.begin(&stage.shade(&head)).unwrap();
+    // SAFETY: the engine has waited for the fences of the frames up to this one.
+    unsafe { gpu.retire(engine.finished()) };
     engine.draw_stage(commands);
-    gpu.record(&mut commands, hair.frame(DT, head, &stage.view, &stage.lights).unwrap()).unwrap();
+    // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
+    let mut hair_commands = unsafe { Commands::new(gpu, commands) };
+    gpu.record(&mut hair_commands, hair.frame(DT, head, &stage.view, &stage.lights).unwrap()).unwrap();
     engine.develop(commands);
     engine.submit(commands, gpu.recorded()).unwrap();
     hair.observe(gpu).unwrap();

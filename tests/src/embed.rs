@@ -3,12 +3,12 @@
 use std::fmt::Display;
 use std::sync::Arc;
 
-pub use tressfx_core::backend::Need;
-use tressfx_core::backend::{Backend, BufferDesc, BufferUse, ComputeDesc, Kernel, Record};
+use tressfx_core::backend::{Backend, BufferDesc, ComputeDesc, Record, Run};
 use tressfx_core::error::Error;
+pub use tressfx_core::error::Need;
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, Load, PassList, RasterPass, Ticket};
-use tressfx_core::shader::{Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Shader, ShaderSource, Specialization};
 
 use crate::suite::say_skipped;
 
@@ -22,7 +22,7 @@ pub type Encoder<E> = <<E as Embed>::Backend as Record>::Encoder;
 /// A small engine with the backend inside: it owns a device, an encoder, buffers and textures.
 pub trait Embed {
     /// The backend.
-    type Backend: Record;
+    type Backend: Record + Run;
 
     /// The backend, on the engine's device.
     fn backend(&mut self) -> &mut Self::Backend;
@@ -80,7 +80,8 @@ pub fn test<E: Embed, F: Display>(name: &str, needs: &[Need], make: impl Fn() ->
     }
 }
 
-const ADD_ONE: ShaderSource = ShaderSource {
+/// Adds one to each of the four `values`.
+pub const ADD_ONE: ShaderSource = ShaderSource {
     label: "suite.add_one",
     root: (
         "root",
@@ -103,28 +104,40 @@ const LOAD: ShaderSource = ShaderSource {
     library: &[],
 };
 
-fn compute(backend: &mut dyn Backend, source: &ShaderSource) -> Kernel {
+/// A kernel of a shader.
+///
+/// # Panics
+/// If the backend makes none.
+pub fn compute(backend: &mut dyn Backend, source: &ShaderSource) -> Kernel {
     let shader = Arc::new(Shader::new(source, &Specialization::new()).expect("the suite's shaders are fine"));
-    backend.create_compute(&ComputeDesc { shader }).expect("a kernel")
+    backend.create_compute(&ComputeDesc::new(shader)).expect("a kernel")
 }
 
 fn own_buffer(backend: &mut dyn Backend) -> BufferId {
-    let desc = BufferDesc { label: "suite.buffer", bytes: 16, usage: BufferUse::Storage };
-    backend.create_buffer(&desc).expect("a buffer")
+    backend.create_buffer(&BufferDesc::storage("suite.buffer", 16)).expect("a buffer")
+}
+
+/// Adds a pass that runs once.
+fn once(list: &mut PassList, kernel: &Kernel, bindings: &[(&str, Binding)]) {
+    list.compute(kernel, &kernel.bind(bindings).expect("the names of the shader"), Grid([1; 3]));
+}
+
+/// Adds a pass that adds one to each word of a buffer.
+fn add_one<E: Embed>(engine: &mut E, list: &mut PassList, values: BufferId) {
+    let kernel = compute(engine.backend(), &ADD_ONE);
+    once(list, &kernel, &[("values", values.into())]);
 }
 
 /// A list that adds one to each word of a buffer.
 fn adding<E: Embed>(engine: &mut E, values: BufferId) -> PassList {
-    let kernel = compute(engine.backend(), &ADD_ONE);
     let mut list = PassList::new();
-    list.compute(&kernel, &kernel.bind(&[("values", values.into())]), Grid([1; 3]));
+    add_one(engine, &mut list, values);
     list
 }
 
 fn clearing(texture: TextureId, color: [f32; 4]) -> PassList {
     let mut list = PassList::new();
-    let colors = vec![(texture, Load::Clear(color))];
-    list.raster(RasterPass { label: "suite.clear", colors, depth: None, draws: Vec::new() });
+    list.raster(RasterPass::new("suite.clear").color(texture, Load::Clear(color)));
     list
 }
 
@@ -141,7 +154,8 @@ fn record<E: Embed>(engine: &mut E, encoder: &mut Encoder<E>, list: &PassList) {
 }
 
 fn words<E: Embed>(engine: &mut E, ticket: Ticket) -> Vec<u32> {
-    bytemuck::pod_collect_to_vec(&engine.backend().read(ticket).expect("submitted and waited for"))
+    let read = engine.backend().read(ticket);
+    bytemuck::pod_collect_to_vec(&read.ready().expect("submitted and waited for"))
 }
 
 /// The four words of a buffer, brought back in a list of their own.
@@ -170,10 +184,10 @@ pub fn two_lists_share_an_encoder<E: Embed>(engine: &mut E) {
     let values = own_buffer(engine.backend());
     let (mut first, mut second) = (PassList::new(), PassList::new());
     first.upload(values, 0, &[1u32, 2, 3, 4]);
-    first.commands.extend(adding(engine, values).commands);
+    add_one(engine, &mut first, values);
     let early = first.read_buffer(values, 0, 16);
     second.upload(values, 4, &[7u32]);
-    second.commands.extend(adding(engine, values).commands);
+    add_one(engine, &mut second, values);
     let late = second.read_buffer(values, 0, 16);
     frame(engine, |engine, encoder| {
         record(engine, encoder, &first);
@@ -236,7 +250,7 @@ pub fn an_imported_texture_keeps_its_content<E: Embed>(engine: &mut E) {
     let values = own_buffer(engine.backend());
     let kernel = compute(engine.backend(), &LOAD);
     let mut load = PassList::new();
-    load.compute(&kernel, &kernel.bind(&[("picture", texture.into()), ("values", values.into())]), Grid([1; 3]));
+    once(&mut load, &kernel, &[("picture", texture.into()), ("values", values.into())]);
     frame(engine, |engine, encoder| {
         record(engine, encoder, &clearing(texture, [0.2, 0.4, 0.6, 0.8]));
         engine.copy_texel(encoder, texture, texel);
@@ -273,7 +287,7 @@ pub fn imports_do_not_count_as_memory<E: Embed>(engine: &mut E) {
 pub fn recorded_lists_are_timed<E: Embed>(engine: &mut E) {
     let values = engine.buffer([0; 4]);
     let mut list = adding(engine, values);
-    list.commands.extend(adding(engine, values).commands);
+    add_one(engine, &mut list, values);
     frame(engine, |engine, encoder| record(engine, encoder, &list));
     let labels: Vec<_> = engine.backend().timings().iter().map(|timing| timing.label).collect();
     let expected = if engine.backend().caps().timestamps { 2 } else { 0 };
@@ -304,6 +318,9 @@ macro_rules! embed_suite {
             textures_survive_what_is_thrown_away: [Raster ReadBack];
             new_resources_survive_what_is_thrown_away: [Compute Raster ReadBack];
             what_is_destroyed_may_be_thrown_away: [Compute Raster ReadBack];
+            a_list_outlives_what_is_destroyed_before_it_is_recorded: [Compute ReadBack];
+            a_read_back_is_given_once_and_can_be_given_up: [Compute ReadBack];
+            parameters_change_with_frames_in_flight: [Compute ReadBack];
         }
     };
     ($make:expr; $($case:ident: [$($need:ident)*];)*) => {$(

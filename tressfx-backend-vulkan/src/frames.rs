@@ -172,6 +172,11 @@ impl Frames {
         }
     }
 
+    /// Whether a resource that no list can name any more waits for recordings.
+    pub(crate) fn holds(&self, resource: Resource) -> bool {
+        self.in_flight.iter().any(|recording| recording.forgotten.contains(&resource))
+    }
+
     /// Destroys something once everything that was recorded so far is over.
     pub(crate) fn throw_away(&mut self, gpu: &Gpu, sets: &mut Sets, garbage: Garbage) {
         match self.in_flight.back_mut() {

@@ -50,6 +50,12 @@ impl VulkanBackend {
         self.sweep();
     }
 
+    /// Whether a resource may still be used: it was not destroyed, or lists or recordings that may name it are not over. An
+    /// engine frees what it had lent once it is not.
+    pub fn uses(&self, resource: Resource) -> bool {
+        self.catalog.has(resource) || self.frames.holds(resource)
+    }
+
     /// The newest recording never runs: everything is as it was before it.
     fn take_back(&mut self, mut recording: Recording) {
         self.tracker.hazards.undo(std::mem::take(&mut recording.undo));

@@ -79,7 +79,7 @@ impl VulkanBackend {
     ///
     /// # Safety
     /// It is a buffer of this device, as `desc` says, whose usages are those that `desc` names. It lives until its id was
-    /// destroyed, no list that was begun before exists any more, and everything recorded with it has run or never will.
+    /// destroyed and the backend [uses](Self::uses) it no more, or until the backend is gone.
     pub unsafe fn import_buffer(
         &mut self,
         buffer: vk::Buffer,

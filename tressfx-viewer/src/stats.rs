@@ -137,13 +137,8 @@ mod tests {
     #[test]
     fn times_are_summed_up_by_label_in_the_order_of_the_frame() {
         let mut times = PassTimes::default();
-        let timing = |label, milliseconds: f64| Timing {
-            label,
-            begin: 0.0,
-            nanoseconds: milliseconds * 1e6,
-            bytes: 0,
-            invocations: None,
-        };
+        let timing =
+            |label, milliseconds: f64| Timing { nanoseconds: milliseconds * 1e6, ..Timing::new(label, None, 0) };
         times.add(&[timing("b", 3.0), timing("a", 1.0)]);
         times.add(&[timing("b", 1.0), timing("b", 2.0)]);
         let expected = [

@@ -88,7 +88,7 @@ mod tests {
     fn passes_follow_the_moment_of_their_submission() {
         let mut trace = Trace::new();
         let start = Instant::now();
-        let timing = Timing { label: "a", begin: 2000.0, nanoseconds: 500.0, bytes: 8, invocations: None };
+        let timing = Timing { begin: 2000.0, nanoseconds: 500.0, ..Timing::new("a", None, 8) };
         trace.gpu(&[timing], 3, start);
         trace.cpu("run", 3, start);
         let submitted = start.duration_since(trace.begun).as_secs_f64() * 1e6;

@@ -18,8 +18,8 @@ pub(crate) struct Engine {
     instance: ash::Instance,
     debug: ext::debug_utils::Instance,
     messenger: vk::DebugUtilsMessengerEXT,
-    /// Where the messages go; its address is the callback's.
-    messages: Box<Mutex<Vec<String>>>,
+    /// Where the messages go; the callback has its address.
+    messages: Arc<Mutex<Vec<String>>>,
     physical_device: vk::PhysicalDevice,
     pub(crate) device: ash::Device,
     queue: vk::Queue,
@@ -37,7 +37,7 @@ impl Engine {
         // SAFETY: the loader is what the system has; it stays as long as the engine.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| error.to_string())?;
         let instance = instance(&entry)?;
-        let messages = Box::new(Mutex::new(Vec::new()));
+        let messages = Arc::new(Mutex::new(Vec::new()));
         let debug = ext::debug_utils::Instance::new(&entry, &instance);
         let messenger = listen(&debug, &messages)?;
         let (physical_device, family) = adapter(&instance)?;
@@ -75,16 +75,11 @@ impl Engine {
 
     /// What a backend is told about the engine.
     pub(crate) fn desc(&self) -> VulkanDesc {
-        VulkanDesc {
-            instance: self.instance.clone(),
-            physical_device: self.physical_device,
-            device: self.device.clone(),
-            queue: self.queue,
-            queue_family: self.family,
-            allocator: self.allocator.clone().unwrap(),
-            enabled: Enabled { debug_utils: true, ..Enabled::default() },
-            pipeline_cache: None,
-        }
+        let (instance, device, allocator) = (self.instance.clone(), self.device.clone(), self.allocator.clone());
+        let queue = (self.queue, self.family);
+        let mut desc = VulkanDesc::new(instance, self.physical_device, device, queue, allocator.unwrap());
+        desc.enabled = Enabled { debug_utils: true, ..Enabled::default() };
+        desc
     }
 
     /// What the validation layer said since the last call.
@@ -245,14 +240,14 @@ fn instance(entry: &ash::Entry) -> Result<ash::Instance, String> {
 
 fn listen(
     debug: &ext::debug_utils::Instance,
-    messages: &Mutex<Vec<String>>,
+    messages: &Arc<Mutex<Vec<String>>>,
 ) -> Result<vk::DebugUtilsMessengerEXT, String> {
     use vk::{DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Kind};
     let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(Severity::WARNING | Severity::ERROR)
         .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
         .pfn_user_callback(Some(heard))
-        .user_data(std::ptr::from_ref(messages).cast_mut().cast());
+        .user_data(Arc::as_ptr(messages).cast_mut().cast());
     // SAFETY: the messages outlive the messenger.
     unsafe { debug.create_debug_utils_messenger(&info, None) }.map_err(|error| error.to_string())
 }

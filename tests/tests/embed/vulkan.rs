@@ -3,13 +3,15 @@
 use std::collections::HashMap;
 
 use tressfx_backend_vulkan::ash::vk;
-use tressfx_backend_vulkan::{Import, VulkanBackend};
+use tressfx_backend_vulkan::{Commands, EngineUse, VulkanBackend};
 use tressfx_conformance::embed::{Embed, TEXTURE_SIZE};
-use tressfx_core::backend::{Format, TextureDesc};
+use tressfx_core::backend::{BufferDesc, Format, TextureDesc};
 use tressfx_core::id::{BufferId, TextureId};
 
 #[path = "engine.rs"]
 mod engine;
+#[path = "in_flight.rs"]
+mod in_flight;
 #[path = "promises.rs"]
 mod promises;
 
@@ -18,7 +20,7 @@ use engine::{Engine, whole};
 tressfx_conformance::embed_suite!(|| Game::new());
 
 /// As the engine's own commands use its buffers.
-const COPIED: Import = Import {
+const COPIED: EngineUse = EngineUse {
     stage: vk::PipelineStageFlags2::ALL_TRANSFER,
     access: vk::AccessFlags2::from_raw(
         vk::AccessFlags2::TRANSFER_READ.as_raw() | vk::AccessFlags2::TRANSFER_WRITE.as_raw(),
@@ -27,10 +29,15 @@ const COPIED: Import = Import {
 };
 
 /// A texture without content.
-const FRESH: Import =
-    Import { stage: vk::PipelineStageFlags2::NONE, access: vk::AccessFlags2::NONE, layout: vk::ImageLayout::UNDEFINED };
+const FRESH: EngineUse = EngineUse {
+    stage: vk::PipelineStageFlags2::NONE,
+    access: vk::AccessFlags2::NONE,
+    layout: vk::ImageLayout::UNDEFINED,
+};
 
-const TEXTURE: TextureDesc = TextureDesc { label: "engine", size: TEXTURE_SIZE, format: Format::Rgba8 };
+fn texture() -> TextureDesc {
+    TextureDesc::new("engine", TEXTURE_SIZE, Format::Rgba8)
+}
 
 /// An engine with hair in it.
 struct Game {
@@ -39,6 +46,8 @@ struct Game {
     engine: Engine,
     buffers: HashMap<BufferId, vk::Buffer>,
     textures: HashMap<TextureId, vk::Image>,
+    /// Lists that were recorded before the newest command buffer was begun.
+    begun: u64,
 }
 
 impl Game {
@@ -46,18 +55,19 @@ impl Game {
         let engine = Engine::new()?;
         // SAFETY: all of it is the engine's, which goes after the backend.
         let hair = unsafe { VulkanBackend::new(engine.desc()) };
-        Ok(Self { hair, engine, buffers: HashMap::new(), textures: HashMap::new() })
+        Ok(Self { hair, engine, buffers: HashMap::new(), textures: HashMap::new(), begun: 0 })
     }
 
     fn import(&mut self, image: vk::Image) -> TextureId {
         // SAFETY: the image is as it is described, and lives as long as the engine.
-        let id = unsafe { self.hair.import_texture(image, &TEXTURE, Import::SAMPLED, Import::SAMPLED) }.unwrap();
+        let id =
+            unsafe { self.hair.import_texture(image, &texture(), EngineUse::SAMPLED, EngineUse::SAMPLED) }.unwrap();
         self.textures.insert(id, image);
         id
     }
 
     /// Waits between two uses of a texture of the engine's, and changes its layout.
-    fn turn(&self, commands: vk::CommandBuffer, image: vk::Image, from: Import, to: Import) {
+    fn turn(&self, commands: vk::CommandBuffer, image: vk::Image, from: EngineUse, to: EngineUse) {
         let barrier = [vk::ImageMemoryBarrier2::default()
             .src_stage_mask(from.stage)
             .src_access_mask(from.access)
@@ -91,7 +101,8 @@ impl Embed for Game {
     fn buffer(&mut self, words: [u32; 4]) -> BufferId {
         let buffer = self.engine.buffer(bytemuck::bytes_of(&words));
         // SAFETY: it has 16 bytes and lives as long as the engine.
-        let id = unsafe { self.hair.import_buffer(buffer, 16, COPIED, COPIED) };
+        let id =
+            unsafe { self.hair.import_buffer(buffer, &BufferDesc::storage("engine", 16), COPIED, COPIED) }.unwrap();
         self.buffers.insert(id, buffer);
         id
     }
@@ -99,7 +110,7 @@ impl Embed for Game {
     fn texture(&mut self) -> TextureId {
         let (image, _) = self.engine.image(TEXTURE_SIZE, vk::Format::R8G8B8A8_UNORM);
         let commands = self.engine.begin();
-        self.turn(commands, image, FRESH, Import::SAMPLED);
+        self.turn(commands, image, FRESH, EngineUse::SAMPLED);
         self.engine.submit(commands);
         self.import(image)
     }
@@ -108,38 +119,42 @@ impl Embed for Game {
         self.import(self.textures[&texture])
     }
 
-    fn begin(&mut self) -> Box<vk::CommandBuffer> {
-        Box::new(self.engine.begin())
+    fn begin(&mut self) -> Box<Commands> {
+        self.begun = self.hair.recorded();
+        // SAFETY: it is being recorded, and is submitted or discarded before the next is begun.
+        Box::new(unsafe { Commands::new(&self.hair, self.engine.begin()) })
     }
 
-    fn clear_word(&mut self, encoder: &mut vk::CommandBuffer, buffer: BufferId, word: u64) {
+    fn clear_word(&mut self, encoder: &mut Commands, buffer: BufferId, word: u64) {
         // SAFETY: the command buffer is being recorded, and the buffer lives as long as the engine.
-        unsafe { self.engine.device.cmd_fill_buffer(*encoder, self.buffers[&buffer], 4 * word, 4, 0) };
+        unsafe { self.engine.device.cmd_fill_buffer(encoder.raw(), self.buffers[&buffer], 4 * word, 4, 0) };
     }
 
-    fn copy_texel(&mut self, encoder: &mut vk::CommandBuffer, texture: TextureId, buffer: BufferId) {
+    fn copy_texel(&mut self, encoder: &mut Commands, texture: TextureId, buffer: BufferId) {
         let (image, buffer) = (self.textures[&texture], self.buffers[&buffer]);
-        self.turn(*encoder, image, Import::SAMPLED, COPIED);
+        self.turn(encoder.raw(), image, EngineUse::SAMPLED, COPIED);
         // SAFETY: as above, and the texture was just put into the layout.
         unsafe {
             let regions = [first_texel()];
-            self.engine.device.cmd_copy_image_to_buffer(*encoder, image, COPIED.layout, buffer, &regions);
+            self.engine.device.cmd_copy_image_to_buffer(encoder.raw(), image, COPIED.layout, buffer, &regions);
         }
-        self.turn(*encoder, image, COPIED, Import::SAMPLED);
+        self.turn(encoder.raw(), image, COPIED, EngineUse::SAMPLED);
     }
 
-    fn submit(&mut self, encoder: Box<vk::CommandBuffer>) {
-        self.engine.submit(*encoder);
+    fn submit(&mut self, encoder: Box<Commands>) {
+        self.engine.submit(encoder.raw());
     }
 
     fn wait(&mut self) {
         self.engine.wait();
-        self.hair.retire(self.hair.recorded());
+        // SAFETY: the queue has finished with everything that was submitted, and all else was discarded.
+        unsafe { self.hair.retire(self.hair.recorded()) };
         self.engine.assert_silent();
     }
 
-    fn discard(&mut self, encoder: Box<vk::CommandBuffer>) {
-        self.engine.discard(*encoder);
-        self.hair.wait_idle().expect("the device is there");
+    fn discard(&mut self, encoder: Box<Commands>) {
+        self.engine.discard(encoder.raw());
+        // SAFETY: it was never submitted.
+        unsafe { self.hair.discard(self.begun) };
     }
 }
