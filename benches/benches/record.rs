@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::VulkanBackend;
+use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_backend_vulkan::ash::vk;
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
-use tressfx_core::backend::{Backend, Format, Record, Run, TextureDesc};
+use tressfx_core::backend::{Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
@@ -31,7 +31,7 @@ struct Frames {
 }
 
 impl Frames {
-    fn new(backend: &mut dyn Backend, grooms: u32) -> Self {
+    fn new(backend: &mut dyn Run, grooms: u32) -> Self {
         let asset = GROOM.parse::<Builtin>().expect("a built-in groom").asset();
         let strands = Strands::new(&asset, &StrandOptions::default()).expect("strands");
         let desc = || SectionDesc { strands: &strands, params: SimParams::default() };

@@ -15,7 +15,7 @@ use glam::{Quat, Vec3, Vec4};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::asset::HairAsset;
-use tressfx_core::backend::Run as _;
+use tressfx_core::backend::{Backend, Run as _};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
