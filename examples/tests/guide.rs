@@ -13,7 +13,7 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
-use tressfx_core::shader::{Shader, SlotKind};
+use tressfx_core::shader::Shader;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{

@@ -39,7 +39,7 @@ impl Embed for Engine {
         let desc = wgpu::BufferDescriptor { label, size: 16, usage, mapped_at_creation };
         let buffer = self.device.create_buffer(&desc);
         self.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&words));
-        let id = self.hair.import_buffer(buffer.clone());
+        let id = self.hair.import_buffer("engine", buffer.clone()).expect("an import");
         self.buffers.insert(id, buffer);
         id
     }
@@ -57,13 +57,13 @@ impl Embed for Engine {
                 | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        let id = self.hair.import_texture("engine", texture.clone());
+        let id = self.hair.import_texture("engine", texture.clone()).expect("an import");
         self.textures.insert(id, texture);
         id
     }
 
     fn import_again(&mut self, texture: TextureId) -> TextureId {
-        self.hair.import_texture("engine", self.textures[&texture].clone())
+        self.hair.import_texture("engine", self.textures[&texture].clone()).expect("an import")
     }
 
     fn begin(&mut self) -> Box<wgpu::CommandEncoder> {
