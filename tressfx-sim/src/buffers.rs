@@ -1,14 +1,17 @@
 //! The buffers of a section.
 
-use bytemuck::NoUninit;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use tressfx_core::Result;
 use tressfx_core::backend::{Backend, BufferDesc, BufferUse};
 use tressfx_core::error::Label;
+use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{Strands, about};
+use tressfx_core::view::Pose;
 
+use crate::collider::{GpuCapsule, GpuCapsuleMotion};
 use crate::step::Step;
 
 /// What the simulation of a section reads and writes. Everything but `strands` holds guides alone, vertex-major:
@@ -25,14 +28,61 @@ pub(crate) struct SectionBuffers {
     pub(crate) previous: BufferId,
     /// `vec4<f32>`, `follow * guides + guide`; only where there are follow strands.
     pub(crate) follow_offsets: Option<BufferId>,
+    /// Only where roots have transforms of their own.
+    pub(crate) roots: Option<RootBuffers>,
     /// [`Step`].
     pub(crate) step: BufferId,
     /// Whether the tip of any guide is pinned.
     pub(crate) pinned_tips: bool,
 }
 
+/// The transforms of roots; an element a guide.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RootBuffers {
+    /// [`RootTransform`] at the end of the frame: what the caller gives.
+    pub(crate) targets: BufferId,
+    /// [`RootTransform`] at the end of the last sub-step.
+    pub(crate) reached: BufferId,
+    /// With the head, now and one sub-step ago; four `vec4<f32>`.
+    pub(crate) now: BufferId,
+}
+
+/// The capsules of a frame, shared by all sections.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CapsuleBuffers {
+    /// [`GpuCapsule`].
+    pub(crate) capsules: BufferId,
+    /// [`GpuCapsuleMotion`].
+    pub(crate) motions: BufferId,
+    /// How many capsules a frame may have.
+    pub(crate) most: usize,
+}
+
+gpu_struct! {
+    /// Where the root of a guide is, within the space of the rest pose: points about the centre of the groom
+    /// ([`HairSim::center`](crate::HairSim::center)) are turned, then moved.
+    pub struct RootTransform {
+        /// A unit quaternion.
+        pub rotation: Vec4,
+        /// Where the centre goes, about the centre; `w` is not read.
+        pub place: Vec4,
+    }
+}
+
+impl RootTransform {
+    /// A root that rides on the head.
+    pub const WITH_HEAD: Self = Self { rotation: Vec4::W, place: Vec4::ZERO };
+
+    /// A pose within the space of the rest pose.
+    pub fn new(center: Vec3, pose: &Pose) -> Self {
+        let (rotation, center) = (pose.rotation.as_dquat().normalize(), center.as_dvec3());
+        let place = rotation * center + pose.translation.as_dvec3() - center;
+        Self { rotation: rotation.as_quat().into(), place: place.as_vec3().extend(0.0) }
+    }
+}
+
 impl SectionBuffers {
-    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3, own_roots: bool) -> Result<Self> {
         let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
         let follows = shape.guides * shape.follows;
@@ -45,6 +95,7 @@ impl SectionBuffers {
                 0 => None,
                 _ => Some(storage(backend, "hair.follow_offsets", 16, follows)?),
             },
+            roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
             step: backend.create_buffer(&BufferDesc {
                 label: "hair.step",
                 bytes: size_of::<Step>() as u64,
@@ -54,37 +105,52 @@ impl SectionBuffers {
         })
     }
 
-    /// What has to be uploaded once.
-    pub(crate) fn uploads(&self, strands: &Strands) -> impl Iterator<Item = Upload> {
-        let always = [
-            Upload::new(self.rest, &strands.interleave(&about(self.strands.center, &strands.rest))),
-            Upload::new(self.rest_lengths, &strands.interleave(&strands.rest_lengths)),
-            Upload::new(self.strands.thickness, &strands.interleave(&strands.thickness)),
-        ];
-        let offsets = self.follow_offsets.map(|buffer| Upload::new(buffer, &strands.follow_offsets));
-        always.into_iter().chain(offsets)
+    /// Uploads the rest pose.
+    pub(crate) fn upload(&self, list: &mut PassList, strands: &Strands) {
+        list.upload(self.rest, 0, &strands.interleave(&about(self.strands.center, &strands.rest)));
+        list.upload(self.rest_lengths, 0, &strands.interleave(&strands.rest_lengths));
+        list.upload(self.strands.thickness, 0, &strands.interleave(&strands.thickness));
+        if let Some(buffer) = self.follow_offsets {
+            list.upload(buffer, 0, &strands.follow_offsets);
+        }
+        if let Some(roots) = &self.roots {
+            list.upload(roots.targets, 0, &vec![RootTransform::WITH_HEAD; strands.guides as usize]);
+        }
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
         let StrandBuffers { positions, tangents, thickness, .. } = self.strands;
         let all = [positions, tangents, thickness, self.rest, self.rest_lengths, self.previous, self.step];
-        for buffer in all.into_iter().chain(self.follow_offsets) {
+        let roots = self.roots.map(|RootBuffers { targets, reached, now }| [targets, reached, now]);
+        for buffer in all.into_iter().chain(self.follow_offsets).chain(roots.into_iter().flatten()) {
             backend.destroy(buffer.into());
         }
     }
 }
 
-/// Bytes on their way to the start of a buffer.
-#[derive(Debug)]
-pub(crate) struct Upload {
-    pub(crate) buffer: BufferId,
-    pub(crate) bytes: Vec<u8>,
+impl RootBuffers {
+    fn new(backend: &mut dyn Backend, guides: u32) -> Result<Self> {
+        Ok(Self {
+            targets: storage(backend, "hair.root_targets", 32, guides)?,
+            reached: storage(backend, "hair.roots_reached", 32, guides)?,
+            now: storage(backend, "hair.roots", 64, guides)?,
+        })
+    }
 }
 
-impl Upload {
-    pub(crate) fn new<T: NoUninit>(buffer: BufferId, data: &[T]) -> Self {
-        Self { buffer, bytes: bytemuck::cast_slice(data).to_vec() }
+impl CapsuleBuffers {
+    /// For so many capsules in a frame of a groom of so many sections.
+    pub(crate) fn new(backend: &mut dyn Backend, most: usize, sections: usize) -> Result<Self> {
+        let count = (most * sections.max(1) * Self::SUB_STEPS) as u32;
+        Ok(Self {
+            capsules: storage(backend, "hair.capsules", size_of::<GpuCapsule>() as u64, count)?,
+            motions: storage(backend, "hair.capsule_motions", size_of::<GpuCapsuleMotion>() as u64, count)?,
+            most,
+        })
     }
+
+    /// Of so many sub-steps the capsules are uploaded at once.
+    pub(crate) const SUB_STEPS: usize = 16;
 }
 
 /// A storage buffer for `count` elements, filled with zeros.
