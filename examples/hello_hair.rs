@@ -13,7 +13,7 @@ use tressfx_render::{
     Backdrop, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section, SectionDraw,
     StrandInfo, Surface, Targets,
 };
-use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput};
+use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, StepInput};
 
 const SIZE: [u32; 2] = [640, 640];
 const FORMAT: Format = Format::Rgba8Srgb;
@@ -27,10 +27,11 @@ fn main() -> Result<()> {
 
     // A second of simulation. Nothing runs before the backend is given the list.
     let mut list = PassList::new();
-    let section = SectionDesc { strands: &strands, params: SimParams::default() };
-    let mut sim = HairSim::new(&mut gpu, &[section], &groom.capsules())?;
+    let section = SectionDesc::new(&strands, SimParams::default());
+    let colliders = Collider::all_with_head(&groom.capsules());
+    let mut sim = HairSim::new(&mut gpu, &mut list, &[section], colliders.len())?;
     for _ in 0..60 {
-        sim.step(&mut list, &StepInput::new(1.0 / 60.0, Pose::IDENTITY))?;
+        sim.step(&mut list, &StepInput::new(1.0 / 60.0, Pose::IDENTITY).with_colliders(&colliders))?;
     }
 
     // What is needed to draw it.

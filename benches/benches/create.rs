@@ -4,6 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::Format;
 use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_render::{HairRenderer, RenderDesc, StrandInfo};
 use tressfx_sim::{HairSim, SectionDesc, SimParams};
@@ -16,8 +17,11 @@ fn strands(groom: &str) -> Strands {
 fn create(c: &mut Criterion) {
     let few = strands("wavy:64:16");
     c.bench_function("HairSim::new", |bench| {
-        let section = || SectionDesc { strands: &few, params: SimParams::default() };
-        bench.iter(|| HairSim::new(&mut NullBackend::default(), &[section()], &[]).expect("a simulation"));
+        let section = || SectionDesc::new(&few, SimParams::default());
+        bench.iter(|| {
+            let (mut backend, mut list) = (NullBackend::default(), PassList::new());
+            HairSim::new(&mut backend, &mut list, &[section()], 0).expect("a simulation")
+        });
     });
     c.bench_function("HairRenderer::new", |bench| {
         let desc = RenderDesc::new([128, 72], Format::Rgba16F);

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_backend_vulkan::ash::vk;
+use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
 use tressfx_core::backend::{Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
@@ -34,12 +34,12 @@ impl Frames {
     fn new(backend: &mut dyn Run, grooms: u32) -> Self {
         let asset = GROOM.parse::<Builtin>().expect("a built-in groom").asset();
         let strands = Strands::new(&asset, &StrandOptions::default()).expect("strands");
-        let desc = || SectionDesc { strands: &strands, params: SimParams::default() };
+        let desc = || SectionDesc::new(&strands, SimParams::default());
         let sections: Vec<_> = (0..grooms).map(|_| desc()).collect();
-        let sim = HairSim::new(backend, &sections, &[]).expect("a simulation");
+        let mut uploads = PassList::new();
+        let sim = HairSim::new(backend, &mut uploads, &sections, 0).expect("a simulation");
         let points: Vec<_> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
         let view = View::around(&points, SIZE);
-        let mut uploads = PassList::new();
         let info = StrandInfo::new(&strands);
         let section = |&buffers| Section::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
         let sections = sim.buffers().iter().map(section).collect();
@@ -56,8 +56,8 @@ impl Frames {
     /// One frame of 1/60 s: two sub-steps, with wind.
     fn write(&mut self, list: &mut PassList) {
         list.clear_commands();
-        let wind = Some(Wind::new(glam::Vec3::new(2.0, 0.0, 1.0)));
-        self.sim.step(list, &StepInput { wind, ..StepInput::new(1.0 / 60.0, Pose::IDENTITY) }).expect("a step");
+        let wind = Wind::new(glam::Vec3::new(2.0, 0.0, 1.0));
+        self.sim.step(list, &StepInput::new(1.0 / 60.0, Pose::IDENTITY).with_wind(wind)).expect("a step");
         let (material, pose) = (&self.material, self.sim.pose());
         let draw = |section| SectionDraw { section, material, pose };
         let draws: Vec<_> = self.sections.iter().map(draw).collect();

@@ -91,7 +91,7 @@ fn warm_up(backend: &mut WgpuBackend, strands: &Strands) -> Result<(), Failure> 
 }
 
 /// The head at the end of a frame: 4 cm to each side three times a second, and turned by half a radian once a second.
-fn input(strands: &Strands, frame: u32) -> StepInput {
+fn input(strands: &Strands, frame: u32) -> StepInput<'static> {
     let swing = |hertz: f64| (std::f64::consts::TAU * hertz * f64::from(frame) / FPS).sin() as f32;
     let translation = Vec3::X * (0.04 * swing(3.0) / strands.metres_per_unit);
     let head = Pose { rotation: Quat::from_rotation_y(0.5 * swing(1.0)), translation };
@@ -111,7 +111,9 @@ impl Run {
     fn new(backend: &mut WgpuBackend, strands: &Strands, setting: Setting) -> Result<Self, Failure> {
         let (rate, iterations) = setting;
         let params = SimParams { local_iterations: iterations, length_iterations: iterations, ..SimParams::default() };
-        let mut sim = HairSim::new(backend, &[SectionDesc { strands, params }], &[])?;
+        let mut list = PassList::new();
+        let mut sim = HairSim::new(backend, &mut list, &[SectionDesc::new(strands, params)], 0)?;
+        backend.run(&list)?;
         sim.set_clock_params(ClockParams { sub_step: 1.0 / f64::from(rate), ..ClockParams::default() })?;
         Ok(Self { setting, sim, passes: BTreeMap::new(), frames: Vec::new() })
     }

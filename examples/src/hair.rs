@@ -11,11 +11,13 @@ use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{Counters, HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets};
-use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput};
+use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, StepInput};
 
 /// A groom that an engine simulates and draws.
 pub struct Hair {
     sim: HairSim,
+    /// What moves with the head.
+    colliders: Vec<Collider<'static>>,
     section: Section,
     material: Material,
     renderer: HairRenderer,
@@ -39,14 +41,15 @@ impl Hair {
         targets: Targets,
     ) -> Result<Self> {
         let strands = Strands::new(&groom.asset(), &StrandOptions::default())?;
-        let section = SectionDesc { strands: &strands, params: SimParams::default() };
-        let sim = HairSim::new(backend, &[section], &groom.capsules())?;
+        let section = SectionDesc::new(&strands, SimParams::default());
+        let colliders = Collider::all_with_head(&groom.capsules());
         let mut list = PassList::new();
+        let sim = HairSim::new(backend, &mut list, &[section], colliders.len())?;
         let section = Section::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
         let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size, format))?;
         let material = Material::default();
         renderer.reserve(backend, view, &[SectionDraw { section: &section, material: &material, pose: sim.pose() }])?;
-        Ok(Self { sim, section, material, renderer, targets, list, counters: VecDeque::new() })
+        Ok(Self { sim, colliders, section, material, renderer, targets, list, counters: VecDeque::new() })
     }
 
     /// The passes of the next frame, which lasts `dt` seconds and at whose end the head is at `head`.
@@ -58,7 +61,7 @@ impl Hair {
         if self.sim.resets() > 0 {
             self.list.clear_commands();
         }
-        self.sim.step(&mut self.list, &StepInput::new(dt, head))?;
+        self.sim.step(&mut self.list, &StepInput::new(dt, head).with_colliders(&self.colliders))?;
         let draws = [SectionDraw { section: &self.section, material: &self.material, pose: self.sim.pose() }];
         self.renderer.draw(&mut self.list, view, lights, &self.targets, &draws);
         self.counters.push_back(self.renderer.read_counters(&mut self.list));

@@ -13,14 +13,14 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
-use tressfx_core::shader::Shader;
+use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
     Backdrop, HairRenderer, Lights, MAX_LIGHTS, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
     SectionDraw, StrandInfo, Surface, Targets,
 };
-use tressfx_sim::{ClockParams, HairSim, SectionDesc, SimParams, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, StepInput, Wind};
 
 use table::{GUIDE, Row, rows, words};
 
@@ -114,12 +114,15 @@ fn everything() -> PassList {
     let mut backend = NullBackend::default();
     let groom = Builtin::parse("curly:8:6").unwrap();
     let strands = Strands::new(&groom.asset(), &StrandOptions { follows: Some(2), ..Default::default() }).unwrap();
-    let section = SectionDesc { strands: &strands, params: SimParams::default() };
-    let mut sim = HairSim::new(&mut backend, &[section], &groom.capsules()).unwrap();
+    let section = SectionDesc::new(&strands, SimParams::default());
+    let colliders = Collider::all_with_head(&groom.capsules());
     let mut list = PassList::new();
+    let sections = [section.clone(), section.with_own_roots()];
+    let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
+    let wind = Wind::new(glam::Vec3::X);
     let turned = Pose { translation: glam::Vec3::X * 0.01, ..Pose::IDENTITY };
     for head in [Pose::IDENTITY, turned] {
-        sim.step(&mut list, &StepInput::new(1.0 / 60.0, head)).unwrap();
+        sim.step(&mut list, &StepInput::new(1.0 / 60.0, head).with_colliders(&colliders).with_wind(wind)).unwrap();
     }
     let size = [64, 64];
     let view = View::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size);
@@ -147,7 +150,9 @@ fn the_table_of_passes_has_every_pass_with_what_it_binds() {
             _ => unreachable!("only passes have labels"),
         };
         let [reads, writes] = passes.entry(label).or_default();
-        for slot in shaders.iter().flat_map(|shader| &shader.slots) {
+        // What the table says in a line below it.
+        let in_table = |slot: &&ShaderSlot| slot.name != "roots";
+        for slot in shaders.iter().flat_map(|shader| &shader.slots).filter(in_table) {
             let side = if slot.kind.is_written() { &mut *writes } else { &mut *reads };
             side.insert(slot.name.clone());
         }

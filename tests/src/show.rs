@@ -13,7 +13,7 @@ use tressfx_render::{
     Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
     SectionDraw, StrandInfo, Surface, Targets,
 };
-use tressfx_sim::{HairSim, SectionDesc, SimParams};
+use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams};
 
 use crate::run_and_read;
 use crate::sim::Motion;
@@ -110,13 +110,13 @@ impl<B: Run> Show<B> {
     /// If the backend cannot make what the scene needs.
     pub fn new(mut backend: B, scene: &Scene) -> Self {
         let gpu: &mut dyn Run = &mut backend;
-        let desc = SectionDesc { strands: &scene.strands, params: scene.params.clone() };
-        let sim = HairSim::new(gpu, &[desc], &scene.capsules).expect("a simulation");
+        let desc = SectionDesc::new(&scene.strands, scene.params.clone());
+        let mut uploads = PassList::new();
+        let sim = HairSim::new(gpu, &mut uploads, &[desc], scene.capsules.len()).expect("a simulation");
         let view = scene.view();
         let mut texture =
             |label, format| gpu.create_texture(&TextureDesc::new(label, scene.size, format)).expect("a texture");
         let targets = Targets { color: texture("show.color", TARGET), depth: texture("show.depth", Format::Depth32F) };
-        let mut uploads = PassList::new();
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
         let section = Section::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
         let section = section.expect("a section");
@@ -137,7 +137,8 @@ impl<B: Run> Show<B> {
     pub fn record(&mut self, list: &mut PassList) {
         self.frame += 1;
         let seconds = f64::from(self.frame) / 60.0;
-        let input = self.scene.motion.input(seconds, 1.0 / 60.0);
+        let colliders = Collider::all_with_head(&self.scene.capsules);
+        let input = self.scene.motion.input(seconds, 1.0 / 60.0).with_colliders(&colliders);
         self.sim.step(list, &input).expect("the input is fine");
         let Self { view, lights, targets, .. } = self;
         let body = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: input.head };

@@ -10,7 +10,8 @@ use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands, about};
 use tressfx_core::view::Pose;
-use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, StepReport, Wind};
+use tressfx_sim::step::Step;
+use tressfx_sim::{CapsuleMotion, Collider, HairSim, SectionDesc, SimParams, Stage, StepInput, StepReport, Wind};
 
 /// A simulation and the GPU that it runs on.
 pub struct Rig {
@@ -20,6 +21,8 @@ pub struct Rig {
     pub sim: HairSim,
     /// What it simulates.
     pub strands: Vec<Strands>,
+    /// What moves with the head and is collided with in every frame that has no colliders of its own.
+    pub capsules: Vec<Capsule>,
 }
 
 impl Rig {
@@ -29,9 +32,27 @@ impl Rig {
     /// If the simulation cannot be made.
     pub fn new(mut backend: Box<dyn Run>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
         let descs: Vec<_> =
-            sections.iter().map(|(strands, params)| SectionDesc { strands, params: params.clone() }).collect();
-        let sim = HairSim::new(&mut *backend, &descs, capsules).expect("the simulation is made");
-        Self { backend, sim, strands: sections.into_iter().map(|(strands, _)| strands).collect() }
+            sections.iter().map(|(strands, params)| SectionDesc::new(strands, params.clone())).collect();
+        let (sim, list) = Self::simulation(&mut *backend, &descs, capsules.len());
+        backend.run(&list).expect("the uploads run");
+        let strands = sections.into_iter().map(|(strands, _)| strands).collect();
+        Self { backend, sim, strands, capsules: capsules.to_vec() }
+    }
+
+    /// A simulation of one section whose roots have transforms of their own.
+    ///
+    /// # Panics
+    /// If the simulation cannot be made.
+    pub fn with_own_roots(mut backend: Box<dyn Run>, strands: Strands, params: SimParams) -> Self {
+        let desc = SectionDesc::new(&strands, params).with_own_roots();
+        let (sim, list) = Self::simulation(&mut *backend, &[desc], 0);
+        backend.run(&list).expect("the uploads run");
+        Self { backend, sim, strands: vec![strands], capsules: Vec::new() }
+    }
+
+    fn simulation(backend: &mut dyn Run, descs: &[SectionDesc], most: usize) -> (HairSim, PassList) {
+        let mut list = PassList::new();
+        (HairSim::new(backend, &mut list, descs, most).expect("the simulation is made"), list)
     }
 
     /// Runs what `record` records.
@@ -50,7 +71,9 @@ impl Rig {
     /// # Panics
     /// If the input is refused or the backend fails.
     pub fn frame(&mut self, input: &StepInput) -> StepReport {
-        self.run(|sim, list| sim.step(list, input)).expect("the input is fine")
+        let with_head = Collider::all_with_head(&self.capsules);
+        let colliders = if input.colliders.is_empty() { &with_head } else { input.colliders };
+        self.run(|sim, list| sim.step(list, &StepInput { colliders, ..*input })).expect("the input is fine")
     }
 
     /// Runs a motion for `seconds` at a frame rate, after a first frame of no time at its beginning.
@@ -80,10 +103,22 @@ impl Rig {
         about(self.sim.center(), &self.strands[section].rest)
     }
 
-    /// A capsule about the centre of the groom.
-    pub fn centred(&self, capsule: &Capsule) -> Capsule {
+    /// Its capsules as kernels see them: about the centre of the groom, and still as the head sees them.
+    pub fn centred(&self) -> Vec<(Capsule, CapsuleMotion)> {
         let center = self.sim.center();
-        Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule }
+        let about = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
+        self.capsules.iter().map(|capsule| (about(capsule), CapsuleMotion::STILL)).collect()
+    }
+
+    /// Runs one kernel of all sections, with these steps for the first section and all capsules.
+    pub fn stage(&mut self, step: &Step, stage: Stage) {
+        let capsules = self.centred();
+        let step = step.with_capsules(0, capsules.len() as u32);
+        self.run(|sim, list| {
+            sim.record_capsules(list, &capsules).expect("as many as it was made for");
+            sim.record_step(list, 0, &step);
+            sim.record_stage(list, stage);
+        });
     }
 
     /// Positions of the guides of a section one sub-step ago, strand-major.
@@ -155,8 +190,8 @@ impl Motion {
     }
 
     /// The input of a frame that ends at a time.
-    pub fn input(&self, seconds: f64, dt: f64) -> StepInput {
-        StepInput { dt, head: self.head(seconds), wind: self.wind }
+    pub fn input(&self, seconds: f64, dt: f64) -> StepInput<'static> {
+        StepInput { wind: self.wind, ..StepInput::new(dt, self.head(seconds)) }
     }
 }
 

@@ -4,8 +4,9 @@ mod support;
 
 use glam::Vec3;
 use tressfx_conformance::render::Groom;
-use tressfx_core::backend::{Caps, DepthOrder, Format, Need};
+use tressfx_core::backend::{Caps, DepthOrder, Format};
 use tressfx_core::error::Error;
+use tressfx_core::error::Need;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;

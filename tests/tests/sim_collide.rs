@@ -11,8 +11,8 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::reference::{self, Guide};
-use tressfx_sim::step::{Step, Units};
-use tressfx_sim::{SimParams, Stage, StepInput, SubStep};
+use tressfx_sim::step::{SectionInfo, Step};
+use tressfx_sim::{CapsuleMotion, SimParams, Stage, StepInput, SubStep};
 
 const GUIDES: usize = 2000;
 const VERTICES: [u32; 5] = [2, 3, 4, 5, 16];
@@ -61,17 +61,13 @@ fn buried(vertices: u32) -> Strands {
 }
 
 /// A step in which the head moves.
-fn step(head: Pose) -> Step {
+fn step(info: &SectionInfo, head: Pose) -> Step {
     let sub_step = SubStep {
-        length: 1.0 / 120.0,
-        length_ratio: 1.0,
-        time: 0.0,
-        rotation: head.rotation,
         turn: Quat::from_rotation_z(0.002),
         shift: Vec3::X * 0.0003,
-        acceleration: 0.0,
+        ..SubStep::at_rest(1.0 / 120.0, head.rotation)
     };
-    Step::new(&limp(), &Units { metres_per_unit: 1.0, tip_separation: 0.0 }, &sub_step, None)
+    Step::new(&limp(), info, &sub_step, None)
 }
 
 /// From the skin of the ball in any direction, amid solids that overlap.
@@ -91,17 +87,14 @@ fn solids() -> [Capsule; 3] {
 type Pair = (Vec<Vec4>, Vec<DVec3>);
 
 /// The kernel, once from the rest pose, on a head that moves: positions and previous positions. And how many strands it moves.
-fn collided(rig: &mut Rig, capsules: &[Capsule], head: Pose) -> ([Pair; 2], usize) {
-    let step = step(head);
+fn collided(rig: &mut Rig, head: Pose) -> ([Pair; 2], usize) {
+    let step = step(&SectionInfo::of(&rig.strands[0]), head);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
-    rig.run(|sim, list| {
-        sim.record_step(list, 0, &step);
-        sim.record_stage(list, Stage::Collide, false);
-    });
+    rig.stage(&step, Stage::Collide);
     let vertices = rig.strands[0].vertices as usize;
     let rest = rig.rest(0);
-    let capsules: Vec<_> = capsules.iter().map(|capsule| rig.centred(capsule)).collect();
+    let capsules = rig.centred();
     let before = positions.clone();
     for guide in 0..GUIDES {
         let range = guide * vertices..(guide + 1) * vertices;
@@ -110,6 +103,7 @@ fn collided(rig: &mut Rig, capsules: &[Capsule], head: Pose) -> ([Pair; 2], usiz
             rest_lengths: &rig.strands[0].rest_lengths[range.clone()],
             positions: &mut positions[range.clone()],
             previous: &mut previous[range],
+            own_root: None,
         };
         reference::collide(&step, &mut of_guide, &capsules);
     }
@@ -129,7 +123,7 @@ fn hard_contacts_match_the_reference() {
             ("amid", amid(vertices), &solids(), GUIDES * 99 / 100),
         ] {
             let Some(mut rig) = rig(strands, limp(), capsules) else { return };
-            let (states, touched) = collided(&mut rig, capsules, head);
+            let (states, touched) = collided(&mut rig, head);
             assert!(touched > GUIDES / 3, "{name}, {vertices} vertices: {touched} strands touch");
             for (gpu, reference) in states {
                 let errors = strand_errors(&rig.strands[0], &gpu, &reference);
@@ -154,8 +148,9 @@ fn collided_reference(strands: &Strands, guide: usize, state: &State) -> State {
     let (positions, previous) = after.split_at_mut(vertices);
     let range = guide * vertices..(guide + 1) * vertices;
     let (rest, rest_lengths) = (&strands.rest[range.clone()], &strands.rest_lengths[range]);
-    let mut of_guide = Guide { rest, rest_lengths, positions, previous };
-    reference::collide(&step(Pose::default()), &mut of_guide, &solids());
+    let mut of_guide = Guide { rest, rest_lengths, positions, previous, own_root: None };
+    let solids = solids().map(|capsule| (capsule, CapsuleMotion::STILL));
+    reference::collide(&step(&SectionInfo::of(strands), Pose::default()), &mut of_guide, &solids);
     after
 }
 

@@ -6,7 +6,7 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Strands, about};
-use tressfx_sim::{ClockParams, SectionDesc, SimParams, metrics, reference};
+use tressfx_sim::{ClockParams, Collider, SectionDesc, SimParams, metrics, reference};
 
 use support::rig;
 
@@ -28,24 +28,28 @@ fn tip_distances(strands: &Strands, one: &[glam::Vec3], other: &[glam::Vec3]) ->
 
 /// 60 sub-steps on the GPU and in f64.
 ///
-/// Not every strand can agree: one that stands on end buckles to a side that hangs on the last bit. One in a hundred may.
+/// Not every strand of the mohawk can agree: one that stands on end buckles to a side that the last bit decides. So its worst are
+/// held to less than the others.
 fn against_reference(name: &str, strands: Strands, capsules: &[Capsule]) {
     let motion = Motion::turning(&strands);
     let params = SimParams::default();
     let Some(mut rig) = rig(strands.clone(), params.clone(), capsules) else { return };
-    let mut reference = reference::Simulation::new(&[SectionDesc { strands: &strands, params }], capsules).unwrap();
+    let mut reference = reference::Simulation::new(&[SectionDesc::new(&strands, params)]).unwrap();
+    let colliders = Collider::all_with_head(capsules);
     rig.play(&motion, 0.5, 60);
     reference.step(&motion.input(0.0, 0.0)).unwrap();
     let steps = (1..=30).map(|frame| motion.input(f64::from(frame) / 60.0, 1.0 / 60.0));
+    let steps = steps.map(|input| input.with_colliders(&colliders));
     let sub_steps: u32 = steps.map(|input| reference.step(&input).unwrap().sub_steps).sum();
     assert_eq!(sub_steps, 60);
     let errors = strand_errors(&strands, &rig.positions(0), &reference.positions(0));
-    let (median, most) = (errors[errors.len() / 2], errors[(errors.len() - 1) * 99 / 100]);
+    let at = |share: usize| errors[(errors.len() - 1) * share / 100];
+    let (median, most, largest) = (at(50), at(99), at(100));
     println!(
-        "{name}: after 60 sub-steps {median:.1e} (median), {most:.1e} (99%), {:.1e} (largest) of strand length",
-        errors[errors.len() - 1]
+        "{name}: after 60 sub-steps {median:.1e} (median), {most:.1e} (99%), {largest:.1e} (largest) of strand length"
     );
-    assert!(most < 1e-3, "{name}: {most:e}");
+    let (allowed_most, allowed) = if name == REAL[0] { (1e-3, 5e-3) } else { (1e-4, 2e-4) };
+    assert!(most < allowed_most && largest < allowed, "{name}: {most:e} (99%), {largest:e} (largest)");
     assert_eq!((rig.non_finite(), reference.non_finite()), (0, 0));
 }
 
@@ -89,7 +93,7 @@ fn tips_at(strands: &Strands, motion: &Motion, fps: u32) -> Option<Vec<glam::Vec
 
 /// 30, 60 and 144 frames a second against 120, where the head is known at every sub-step. The motion starts where it neither
 /// has its highest speed nor its highest acceleration: at the other end of so many periods either would hide errors.
-fn frame_rates_agree(name: &str, strands: &Strands, share: usize) {
+fn frame_rates_agree(name: &str, strands: &Strands, share: usize, allowed: f64) {
     let motion = Motion { start: 1.0 / 24.0, ..Motion::wild(strands) };
     let Some(exact) = tips_at(strands, &motion, 120) else { return };
     for fps in [30, 60, 144] {
@@ -97,14 +101,14 @@ fn frame_rates_agree(name: &str, strands: &Strands, share: usize) {
         let at = |share: usize| distances[(distances.len() - 1) * share / 100];
         let (median, most, last) = (at(50), at(99), at(100));
         println!("{name}: {fps} fps: {median:.1e} (median), {most:.1e} (99%), {last:.1e} (largest) of a strand");
-        assert!(at(share) < 0.02, "{name} at {fps} fps: {}", at(share));
+        assert!(at(share) < allowed, "{name} at {fps} fps: {}", at(share));
     }
 }
 
 #[test]
 fn frame_rate_does_not_change_where_the_tips_are() {
     for name in ["straight", "wavy", "curly", "long", "fur"] {
-        frame_rates_agree(name, &builtin(name, 200), 100);
+        frame_rates_agree(name, &builtin(name, 200), 100, 0.005);
     }
 }
 
@@ -112,8 +116,8 @@ fn frame_rate_does_not_change_where_the_tips_are() {
 fn frame_rate_does_not_change_where_the_tips_of_real_grooms_are() {
     for path in REAL {
         // Edges of the mohawk are shorter than what so wild a head moves in a sub-step, and some of its strands are chaotic.
-        let share = if path == REAL[0] { 99 } else { 100 };
-        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share));
+        let (share, allowed) = if path == REAL[0] { (99, 0.02) } else { (100, 0.012) };
+        real(path).into_iter().for_each(|strands| frame_rates_agree(path, &strands, share, allowed));
     }
 }
 
@@ -128,7 +132,9 @@ fn lengths_hold(name: &str, strands: Strands, capsules: &[Capsule]) {
             "{name}: edge error max {:.1e}, rms {:.1e}, mean {:.1e} over {} edges",
             error.max, error.rms, error.mean, error.edges
         );
-        assert!(error.rms < 0.02, "{name}: {error:?}");
+        // The mohawk has edges of less than a micrometre.
+        let (rms, max) = if name == REAL[0] { (7e-3, 0.5) } else { (1e-5, 1e-4) };
+        assert!(error.rms < rms && error.max < max, "{name}: {error:?}");
         assert_eq!(metrics::non_finite(&positions), 0, "{name}");
     }
     assert_eq!(rig.non_finite(), 0, "{name}");
@@ -209,8 +215,8 @@ fn the_sub_step_changes_little() {
 #[test]
 fn references_agree_on_what_a_frame_is() {
     let strands = random_strands(3, 5, 1, 9);
-    let descs = [SectionDesc { strands: &strands, params: SimParams::default() }];
-    let mut reference = reference::Simulation::new(&descs, &[]).unwrap();
+    let descs = [SectionDesc::new(&strands, SimParams::default())];
+    let mut reference = reference::Simulation::new(&descs).unwrap();
     let motion = Motion::still(&strands);
     let report = reference.step(&motion.input(0.0, 0.0)).unwrap();
     assert!(report.reset && report.sub_steps == 0);

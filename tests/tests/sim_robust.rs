@@ -9,8 +9,11 @@ use tressfx_core::pass::PassList;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
-use tressfx_sim::step::{Step, Units};
-use tressfx_sim::{Clock, ClockParams, HairSim, SectionDesc, SimError, SimParams, Stage, StepInput, Wind, metrics};
+use tressfx_sim::step::{SectionInfo, Step};
+use tressfx_sim::{
+    Clock, ClockParams, Collider, HairSim, RootTransform, SectionDesc, SimError, SimParams, Solver, Stage, StepInput,
+    Wind, metrics,
+};
 
 use support::{rig, rig_of_sections};
 
@@ -27,11 +30,13 @@ fn state(params: SimParams, capsules: &[Capsule], motion: &Motion) -> Option<(Ve
 
 fn labels(params: SimParams, capsules: &[Capsule], strands: &Strands, motion: &Motion) -> Vec<&'static str> {
     let mut backend = NullBackend::default();
-    let mut sim = HairSim::new(&mut backend, &[SectionDesc { strands, params }], capsules).unwrap();
     let mut list = PassList::new();
-    sim.step(&mut list, &motion.input(0.0, 0.0)).unwrap();
+    let colliders = Collider::all_with_head(capsules);
+    let sections = [SectionDesc::new(strands, params)];
+    let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
+    sim.step(&mut list, &motion.input(0.0, 0.0).with_colliders(&colliders)).unwrap();
     list.clear_commands();
-    sim.step(&mut list, &motion.input(1.0 / 120.0, 1.0 / 120.0)).unwrap();
+    sim.step(&mut list, &motion.input(1.0 / 120.0, 1.0 / 120.0).with_colliders(&colliders)).unwrap();
     list.labels().collect()
 }
 
@@ -60,9 +65,9 @@ fn passes_without_an_effect_are_left_out_and_the_result_is_the_same() {
     // It takes the root away and adds it again, which is not the same to the bit.
     let apart = without_it.iter().zip(&with_it).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
     assert!(apart < 1e-5, "hair.sim.local_shape: {apart:e} m");
-    let zero = SimParams { shock: 0.0, ..params.clone() };
-    let tiny = SimParams { shock: NEXT_TO_NOTHING, ..params.clone() };
-    assert_eq!(without(&zero, "hair.sim.velocity_shock"), with(&tiny, &[], "hair.sim.velocity_shock"));
+    let zero = SimParams { wind_drag: 0.0, ..params.clone() };
+    let tiny = SimParams { wind_drag: NEXT_TO_NOTHING, ..params.clone() };
+    assert_eq!(without(&zero, "hair.sim.wind"), with(&tiny, &[], "hair.sim.wind"));
     let far = Capsule { a: Vec3::splat(9.0), b: Vec3::splat(9.5), radius_a: 1.0, radius_b: 0.5 };
     assert_eq!(without(&params, "hair.sim.collide"), with(&params, &[far], "hair.sim.collide"));
     let zero = SimParams { global_stiffness: 0.0, ..params.clone() };
@@ -96,7 +101,9 @@ fn a_head_that_has_not_moved_gives_no_shock() {
     let motion = Motion::still(&strands());
     let stages = labels(SimParams::default(), &[], &strands(), &motion);
     let expected: Vec<_> =
-        [Stage::Integrate, Stage::LocalShape, Stage::Length, Stage::Follow, Stage::Tangents].map(Stage::label).into();
+        [Stage::Integrate, Stage::LocalShape, Stage::Lengths, Stage::Recovery, Stage::Follow, Stage::Tangents]
+            .map(Stage::label)
+            .into();
     assert_eq!(stages, expected);
     // The pass by hand, in every sub-step.
     let Some(mut rig) = rig(strands(), SimParams::default(), &[]) else { return };
@@ -105,13 +112,9 @@ fn a_head_that_has_not_moved_gives_no_shock() {
     clock.advance(0.0, Pose::IDENTITY);
     for _ in 0..30 {
         for sub_step in clock.advance(1.0 / 60.0, Pose::IDENTITY).sub_steps {
-            let units = Units { metres_per_unit: 1.0, tip_separation: 0.0 };
-            let step = Step::new(&SimParams::default(), &units, &sub_step, None);
+            let step = Step::new(&SimParams::default(), &SectionInfo::of(&rig.strands[0]), &sub_step, None);
             assert!(step.shock > 0.0);
-            rig.run(|sim, list| {
-                sim.record_step(list, 0, &step);
-                Stage::SUB_STEP.iter().for_each(|&stage| sim.record_stage(list, stage, false));
-            });
+            Solver::TressFx.sub_step().iter().for_each(|&stage| rig.stage(&step, stage));
         }
     }
     let by_hand = rig.positions(0)[..65 * 12].to_vec();
@@ -176,7 +179,7 @@ fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
     println!("deepest {deepest:.1e} m, {touching} vertices touch, edge error {error:?}");
     assert!(deepest > -1e-5, "{deepest}");
     assert!(touching > 100, "{touching}");
-    assert!(error.rms < 1e-4, "{error:?}");
+    assert!(error.rms < 6e-6, "{error:?}");
 }
 
 #[test]
@@ -189,7 +192,7 @@ fn strands_that_are_pinned_at_both_ends_hang_between_them() {
     let (positions, head) = (rig.world(0), motion.head(1.0));
     let error = metrics::edge_error(&rig.strands[0], &positions);
     println!("both ends pinned: {error:?}");
-    assert!(error.rms < 0.02, "{error:?}");
+    assert!(error.rms < 6e-3 && error.max < 0.05, "{error:?}");
     for (strand, rest) in positions.chunks(12).zip(rig.strands[0].rest.chunks(12)) {
         for vertex in [0, 11] {
             assert!(strand[vertex].truncate().distance(head.transform(rest[vertex].truncate())) < 1e-5);
@@ -217,7 +220,8 @@ fn friction_drags_along_what_lies_on_a_turning_head() {
     let Some(ice) = dragged(0.0) else { return };
     let rough = dragged(1.0).unwrap();
     println!("turned by {ice} on ice, by {rough} on what is rough");
-    assert!(ice.abs() < rough.abs(), "{ice} {rough}");
+    // A turn about y takes x to -z. The roots take hair along on ice too.
+    assert!(ice < 0.0 && rough < 1.1 * ice, "what is rough drags hair along with its turn: {rough} {ice}");
 }
 
 #[test]
@@ -290,7 +294,7 @@ fn stress_leaves_strands_finite_and_their_lengths_right() {
             let dt = [1.0 / 60.0, 0.0, 10.0, -1.0, 1e-9][frame % 5];
             let rotation = Quat::from_rotation_y(1.9 * frame as f32);
             let head = Pose { rotation, translation: Vec3::X * (frame as f32 * 7.0).sin() };
-            let report = rig.frame(&StepInput { dt, head, wind });
+            let report = rig.frame(&StepInput { wind, ..StepInput::new(dt, head) });
             assert!(report.sub_steps <= 12, "{report:?}");
             assert!(dt < 1.0 || (report.dropped > 9.8), "{report:?}");
         }
@@ -305,20 +309,23 @@ fn stress_leaves_strands_finite_and_their_lengths_right() {
 fn what_is_not_finite_or_out_of_range_is_refused_and_nothing_is_recorded() {
     let mut backend = NullBackend::default();
     let strands = strands();
-    let wrong = SectionDesc { strands: &strands, params: SimParams { shock: 1.5, ..SimParams::default() } };
-    let error = HairSim::new(&mut backend, &[wrong], &[]).unwrap_err();
+    let wrong = SectionDesc::new(&strands, SimParams { shock: 1.5, ..SimParams::default() });
+    let error = HairSim::new(&mut backend, &mut PassList::new(), &[wrong], 0).unwrap_err();
     assert_eq!(error.to_string(), "parameter shock = 1.5 must be from 0 to 1");
-    let desc = SectionDesc { strands: &strands, params: SimParams::default() };
-    let mut sim = HairSim::new(&mut backend, &[desc], &[]).unwrap();
+    let desc = SectionDesc::new(&strands, SimParams::default());
+    let mut sim = HairSim::new(&mut backend, &mut PassList::new(), &[desc], 0).unwrap();
     let mut list = PassList::new();
     let nowhere = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };
     for (input, name) in [
         (StepInput::new(f64::NAN, Pose::IDENTITY), "dt"),
         (StepInput::new(0.1, nowhere), "head.translation"),
-        (StepInput { wind: Some(Wind::new(Vec3::INFINITY)), ..StepInput::new(0.1, Pose::IDENTITY) }, "wind.velocity"),
+        (StepInput::new(0.1, Pose::IDENTITY).with_wind(Wind::new(Vec3::INFINITY)), "wind.velocity"),
     ] {
         assert_eq!(sim.step(&mut list, &input), Err(SimError::NonFinite { name }));
     }
+    let scaled = Pose { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 1.1), ..Pose::IDENTITY };
+    let error = sim.step(&mut list, &StepInput::new(0.1, scaled)).unwrap_err();
+    assert_eq!(error, SimError::NoRotation { name: "head.rotation", length: 1.1 });
     assert!(list.commands().is_empty());
     assert!(sim.set_clock_params(ClockParams { sub_step: 0.0, ..ClockParams::default() }).is_err());
     assert!(sim.set_params(&mut backend, 0, SimParams { damping: -1.0, ..SimParams::default() }).is_err());
@@ -341,31 +348,67 @@ fn parameters_can_change_while_it_runs() {
     assert_eq!(memory(&*rig.backend), 0, "everything is freed");
 }
 
+/// An engine writes frames ahead of the GPU. What a list was written with stays, whatever changes after it.
+#[test]
+fn parameters_change_while_lists_wait() {
+    let Some(mut waiting) = rig(strands(), SimParams::default(), &[]) else { return };
+    let mut at_once = rig(strands(), SimParams::default(), &[]).unwrap();
+    let motion = Motion::wild(&strands());
+    let other = SimParams {
+        length_iterations: 5,
+        local_iterations: 1,
+        global_stiffness: 0.0,
+        gravity: Vec3::Y,
+        ..SimParams::default()
+    };
+    let mut lists = Vec::new();
+    for frame in 0..30 {
+        let dt = if frame == 0 { 0.0 } else { 1.0 / 60.0 };
+        let input = motion.input(f64::from(frame) / 60.0, dt);
+        let params = if frame / 4 % 2 == 0 { SimParams::default() } else { other.clone() };
+        for rig in [&mut waiting, &mut at_once] {
+            rig.sim.set_params(&mut *rig.backend, 0, params.clone()).unwrap();
+        }
+        at_once.frame(&input);
+        let mut list = PassList::new();
+        waiting.sim.step(&mut list, &input).unwrap();
+        lists.push(list);
+        // Up to three frames are in flight.
+        if lists.len() > 3 {
+            waiting.backend.run(&lists.remove(0)).unwrap();
+        }
+    }
+    lists.iter().for_each(|list| waiting.backend.run(list).unwrap());
+    assert_eq!(waiting.positions(0), at_once.positions(0));
+    assert_eq!(waiting.previous(0), at_once.previous(0));
+}
+
 #[test]
 fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl() {
     let mut backend = NullBackend::default();
     let strands = random_strands(10, 5, 1, 2);
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.1, radius_b: 0.1 };
-    let desc = SectionDesc { strands: &strands, params: SimParams::default() };
-    let mut sim = HairSim::new(&mut backend, &[desc], &[ball]).unwrap();
+    let desc = SectionDesc::new(&strands, SimParams::default());
     let mut list = PassList::new();
-    let motion = Motion::wild(&strands);
-    sim.step(&mut list, &motion.input(0.0, 0.0)).unwrap();
-    sim.step(&mut list, &motion.input(1.0 / 60.0, 1.0 / 60.0)).unwrap();
+    let mut sim = HairSim::new(&mut backend, &mut list, &[desc.with_own_roots()], 1).unwrap();
+    let (motion, ball) = (Motion::wild(&strands), [Collider::with_head(ball)]);
+    sim.step(&mut list, &motion.input(0.0, 0.0).with_colliders(&ball)).unwrap();
+    sim.step(&mut list, &motion.input(1.0 / 60.0, 1.0 / 60.0).with_colliders(&ball)).unwrap();
     let mut seen = Vec::new();
     for command in list.commands() {
         let tressfx_core::pass::Command::Compute(pass) = command else { continue };
         let shader = &pass.kernel.shader;
         assert!(shader.storage_buffers() <= 6, "{}", shader.label);
-        if shader.label != Stage::Tangents.label() {
-            shader.check_layout::<Step>().unwrap();
+        shader.check_layout::<Step>().unwrap();
+        if shader.label == Stage::Roots.label() {
+            shader.check_layout::<RootTransform>().unwrap();
         }
         seen.push(shader.label);
     }
-    for stage in Stage::SUB_STEP.into_iter().chain(Stage::FRAME_END) {
+    for stage in Solver::TressFx.sub_step().iter().chain(&Solver::FRAME_END) {
         assert!(seen.contains(&stage.label()), "{} runs", stage.label());
     }
-    assert_eq!(tressfx_core::check::problem(&list), None);
+    tressfx_core::backend::Run::run(&mut backend, &list).unwrap();
 }
 
 /// A long shake of the mohawk, which holds strands of nearly no length: 200 frames, or as many as TRESSFX_LONG_FRAMES says.
@@ -383,5 +426,5 @@ fn a_long_shake_leaves_nothing_non_finite() {
     let resets = rig.non_finite();
     println!("{} after {frames} frames: {error:?}, {resets} resets", rig.strands[0].name);
     assert_eq!((metrics::non_finite(&positions), resets), (0, 0));
-    assert!(error.rms < 0.02, "{error:?}");
+    assert!(error.rms < 4e-3 && error.max < 0.4, "{error:?}");
 }

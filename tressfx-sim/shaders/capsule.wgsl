@@ -1,11 +1,20 @@
 // Tapered capsules.
 
-import package::vector::{across, direction_or};
+import package::vector::{across, direction_or, rotate_back};
 
 struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
 
-/// A capsule about an origin.
-fn about(origin: vec3<f32>, capsule: GpuCapsule) -> GpuCapsule {
+/// The motion of a capsule during the sub-step as the head sees it, about the centre of the groom: its points are turned, then
+/// shifted.
+struct GpuCapsuleMotion { turn: vec4<f32>, shift: vec3<f32>, padding: f32 }
+
+/// Where a point of a capsule was at the beginning of the sub-step.
+fn origin_of(motion: GpuCapsuleMotion, point: vec3<f32>) -> vec3<f32> {
+    return rotate_back(motion.turn, point - motion.shift);
+}
+
+/// A capsule relative to an origin.
+fn relative_to(origin: vec3<f32>, capsule: GpuCapsule) -> GpuCapsule {
     return GpuCapsule(capsule.a - origin, capsule.radius_a, capsule.b - origin, capsule.radius_b);
 }
 
@@ -25,28 +34,31 @@ fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
     return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper);
 }
 
-/// How many times as far as it is deep, or off the way to the centre, a vertex is turned at most: so many times an error of
-/// rounding grows in a contact.
+/// A vertex is turned at most so many times as far as it is deep, or as it is off the line through parent and centre. This is
+/// also the factor by which a contact can enlarge a rounding error.
 const GROWTH: f32 = 4.0;
-/// The straightest outwards that a vertex is turned: further on, the angle is like the square root of the depth.
+/// Sine of the smallest angle between an edge and the way straight outwards that a turn may end at. At smaller angles the turn
+/// goes with the square root of the depth.
 const LEAST_SINE: f32 = 1.0 / GROWTH;
-/// A strand that points straight at a centre counts as so far off, as a share of its parent's distance and to whatever side:
-/// else it would never get out. It is what positions can just tell.
+/// A strand that points straight at a centre is treated as off that line by this share of its parent's distance, to any side:
+/// else it would never get out. It is about what f32 can tell of positions.
 const TILT: f32 = 1e-7;
 
 /// Where a vertex has been turned to, and the share that this took of how far it may be turned.
 struct Turn { point: vec3<f32>, share: f32 }
 
-/// Turns a vertex that is inside of a sphere about its parent until it is on it: the distance from the parent stays. In the
-/// plane of parent, centre and `aim`, where the turn starts, that is a triangle of three known sides.
+/// Turns a vertex that is inside of a sphere about its parent until it is on the surface; its distance from the parent stays. The
+/// turn is in the plane of parent, centre and `aim`, the direction that it starts from. Parent, centre and vertex are then a
+/// triangle whose three sides are known.
 ///
-/// Where the edge points nearly at the centre, the plane is a matter of rounding, and the turn is like the square root of the
-/// depth. So the turn is bounded, and goes on in the next sub-step. `left` is the share of the bound that earlier turns have
-/// left: between two capsules a vertex is turned back and forth, and else each turn would multiply the errors of the one before.
-/// Where the parent is so deep inside that it takes nearly the whole edge to get out, or more, the vertex ends as straight
-/// outwards as `LEAST_SINE` allows, or stays as straight as it is. Where the parent is at the centre, no way leads outwards.
+/// The turn is bounded, and goes on in the next sub-step: where the edge points nearly at the centre, rounding decides on the
+/// plane, and the turn goes with the square root of the depth. `left` is the share of the bound that earlier turns of this
+/// sub-step have left: between two capsules a vertex is turned back and forth, and each turn enlarges the errors of the one
+/// before. Where the parent is so deep inside that the edge just reaches the surface, or does not reach it, the vertex ends as
+/// straight outwards as `LEAST_SINE` allows, or keeps its angle if that is smaller. Where the parent is at the centre, no
+/// direction is outwards.
 ///
-/// All of this hangs on its arguments without a jump: what is only just touched is only just turned.
+/// The result depends on the arguments without a jump: a vertex that is hardly inside is turned hardly at all.
 fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>, left: f32) -> Turn {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));

@@ -1,61 +1,72 @@
-// Collision with tapered capsules that move with the head, from the root to the tip. One thread a guide.
+// Collision with tapered capsules, from the root to the tip. One thread a guide.
 //
-// A vertex inside a capsule is not pushed but turned out about its parent, and what hangs on it follows, so that every edge
-// keeps its length. Strands that touch nothing stay as they are, to the bit.
+// A vertex inside a capsule is turned about its parent until it is outside, and the rest of the strand follows, so that every
+// edge keeps its length. A strand that touches nothing is not written.
 //
-// A vertex that is so far from all capsules that the next ones cannot have got there is the last to be looked at for a while.
+// Most vertices are far from all capsules. Where the nearest capsule is at a distance `clear`, the next vertices need no test
+// until the strand has gone on by that length.
 
-import package::capsule::{GROWTH, GpuCapsule, about, clearance, nearest, slid, turned_out};
-import package::constants::{GUIDES, STRANDS, VERTICES};
+import package::capsule::{GROWTH, GpuCapsule, GpuCapsuleMotion, clearance, nearest, origin_of, relative_to, slid, turned_out};
 import package::grid::{GROUP, thread_index};
-import package::step::Step;
-import package::vector::{direction_or, rotate, rotate_back};
+import package::root::{Root, carried_from, root_of};
+import package::step::step;
+import package::vector::{DOWN, direction_or, rotate, rotate_back};
 
-@group(0) @binding(0) var<uniform> step: Step;
-/// In the space of the rest pose, about the centre of the groom.
+/// At the end of the sub-step, in the space of the rest pose, about the centre of the groom.
 @group(0) @binding(1) var<storage, read> capsules: array<GpuCapsule>;
-@group(0) @binding(2) var<storage, read> rest_lengths: array<f32>;
-@group(0) @binding(3) var<storage, read_write> previous: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
+/// How each of them has moved during the sub-step.
+@group(0) @binding(2) var<storage, read> capsule_motions: array<GpuCapsuleMotion>;
+@group(0) @binding(3) var<storage, read> rest_lengths: array<f32>;
+@group(0) @binding(4) var<storage, read_write> previous: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> positions: array<vec4<f32>>;
 
-/// A vertex that leaves one capsule may enter another.
+/// How often the capsules are gone through at most: a vertex that leaves one may enter another.
 const ROUNDS: u32 = 5u;
-/// What a round leaves to the next one of how far it may turn: else each would multiply the errors of the one before.
+/// Share of the bound on turns that a round leaves to the next one. Without it each round would multiply the rounding errors of
+/// the round before.
 const NEXT_ROUND: f32 = 0.25;
-/// As a share of the edge: after less than that nothing is looked at again.
+/// A round that turns a vertex by less than this share of its edge is the last one.
 const LEAST_TURN: f32 = 1e-5;
-/// Share of the squared radius within which a vertex is inside: one that was put on the surface is not inside of it.
+/// Share of the squared radius within which a vertex is inside. A vertex that was put on the surface is outside.
 const INSIDE: f32 = 0.999999;
-/// The way of an edge that has none.
-const DOWN = vec3<f32>(0.0, -1.0, 0.0);
-/// Further than any groom extends.
+/// Larger than any groom.
 const FAR: f32 = 1e30;
-/// Of a clearance, what rounding leaves certain.
+/// Share of a clearance that is certain in spite of rounding.
 const CERTAIN: f32 = 0.999;
 
-/// `kept` is the way that the point has made in the sub-step, as the head sees it, less what contacts have taken from it. Turns
-/// start from `heading`, and `left` is the share of their bound that is left. The point is at least `clear` away from all capsules, if
-/// it has not touched any.
-struct Contact { point: vec3<f32>, touched: bool, kept: vec3<f32>, clear: f32, heading: vec3<f32>, left: f32 }
+/// A vertex on its way out of the capsules. Vectors are on the axes of the head, points about the root of the strand.
+struct Contact {
+    point: vec3<f32>,
+    /// Whether any capsule held the vertex.
+    touched: bool,
+    /// The vertex's displacement since its past, without what contacts have taken from it.
+    displacement: vec3<f32>,
+    /// Distance from all capsules, if none was touched.
+    clear: f32,
+    /// The direction of the edge from which turns start.
+    heading: vec3<f32>,
+    /// Share of the bound on turns that is left.
+    left: f32,
+}
 
-/// What a round does: the capsules from `first` up to `last` are looked at, `hits` of them held the point, the last of those is `hit`,
-/// `gone` is how far the point has been turned, and it was at least `others` away from all that did not hold it.
-struct Round { first: u32, last: u32, hits: u32, hit: u32, gone: f32, others: f32 }
+/// One time through the capsules from `first` up to `end`. `hits` of them held the vertex, the last of those is `hit`. All turns
+/// together moved it by `moved`. It was at least `others` away from all capsules that did not hold it.
+struct Round { first: u32, end: u32, hits: u32, hit: u32, moved: f32, others: f32 }
 
 @compute @workgroup_size(GROUP)
 fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
            @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
-    if (strand >= GUIDES) { return; }
-    // Contacts are found about the root, so that roundings are those of what is near, see `length`.
+    if (strand >= step.guides) { return; }
+    // Contacts are found about the root, so that roundings are those of what is near, see `lengths`.
     let root = positions[strand].xyz;
     // The parent before and after this kernel.
     var old_parent = root;
     var parent = root;
     var moved = false;
     var clear = 0.0;
-    for (var i = 1u; i < VERTICES; i++) {
-        let vertex = positions[i * STRANDS + strand];
+    for (var i = 1u; i < step.vertices; i++) {
+        let vertex = positions[i * step.strands + strand];
         var point = vertex.xyz;
         moved = moved && vertex.w > 0.0;
         if (moved) { point = parent + edge_length(i, strand) * direction_or(vertex.xyz - parent, DOWN); }
@@ -63,71 +74,75 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         if (clear <= 0.0 && vertex.w > 0.0) {
             let length = edge_length(i, strand);
             let edge = in_head(vertex.xyz - old_parent);
-            let contact = resolved(root, in_head(parent - root), in_head(point - root), length, edge, i * GUIDES + strand);
+            let contact = resolved(root, in_head(parent - root), in_head(point - root), length, edge, i, strand);
             if (contact.touched) {
                 point = root + in_world(contact.point);
-                let past = rotate_back(step.turn, root + in_world(contact.point - contact.kept)) - step.shift;
-                previous[i * GUIDES + strand] = vec4(past, 0.0);
+                let past = root + in_world(contact.point - contact.displacement);
+                previous[i * step.guides + strand] = vec4(past, 0.0);
             }
             moved = moved || contact.touched;
             clear = CERTAIN * contact.clear;
         }
-        if (moved) { positions[i * STRANDS + strand] = vec4(point, vertex.w); }
+        if (moved) { positions[i * step.strands + strand] = vec4(point, vertex.w); }
         old_parent = vertex.xyz;
         parent = point;
     }
 }
 
-/// Of the edge from the parent of a vertex.
+/// Rest length of the edge from the parent of a vertex.
 fn edge_length(vertex: u32, strand: u32) -> f32 {
-    return rest_lengths[(vertex - 1u) * GUIDES + strand];
+    return rest_lengths[(vertex - 1u) * step.guides + strand];
 }
 
-/// Where a vertex is when it has left all capsules, about the root and seen from the head. `edge` is the way that its edge had
-/// before anything moved, `past` the place of its past.
+/// A vertex that has left all capsules. `edge` is the edge from its parent before this kernel moved anything.
 ///
-/// Every contact takes its share of the velocity, as deep as it is: between two capsules a vertex is turned back and forth, and no
-/// contact stands for all.
-fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, past: u32) -> Contact {
+/// Every contact takes its own share of the displacement, as large as the vertex is deep: between two capsules a vertex is turned
+/// back and forth, and no single contact stands for all.
+fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, vertex: u32, strand: u32) -> Contact {
     let origin = in_head(root);
     var contact = Contact(start, false, vec3(0.0), 0.0, direction_or(edge, DOWN), 1.0);
-    var round = Round(0u, arrayLength(&capsules), 0u, 0u, 0.0, FAR);
+    var round = Round(step.first_capsule, step.end_capsule, 0u, 0u, 0.0, FAR);
     for (var count = 0u; count < ROUNDS; count++) {
-        for (var i = round.first; i < round.last; i++) {
-            let capsule = about(origin, capsules[i]);
+        for (var i = round.first; i < round.end; i++) {
+            let capsule = relative_to(origin, capsules[i]);
             let sphere = nearest(capsule, contact.point);
             let from_center = contact.point - sphere.xyz;
             if (dot(from_center, from_center) < INSIDE * sphere.w * sphere.w) {
-                if (!contact.touched) { contact.kept = start - in_head(carried(previous[past].xyz) - root); }
-                round.gone += leave(&contact, parent, length, sphere);
+                if (!contact.touched) {
+                    contact.displacement = start - in_head(previous[vertex * step.guides + strand].xyz - root);
+                }
+                let surface = surface_displacement(root, contact.point, i, strand);
+                round.moved += leave(&contact, parent, length, sphere, surface);
                 round.hits += 1u;
                 round.hit = i;
-                if (CERTAIN * round.others <= round.gone) { round.last = arrayLength(&capsules); }
+                if (CERTAIN * round.others <= round.moved) { round.end = step.end_capsule; }
             } else {
                 round.others = min(round.others, clearance(capsule, contact.point, sphere));
             }
         }
         if (!contact.touched) { contact.clear = round.others; }
-        if (round.gone <= LEAST_TURN * length) { break; }
+        if (round.moved <= LEAST_TURN * length) { break; }
         contact.left *= NEXT_ROUND;
         round = following(round);
     }
     return contact;
 }
 
-/// The round after this one. Capsules that the point cannot have got to are not looked at, unless that round takes it further.
+/// The round after this one. Where only one capsule held the vertex, and the others are too far away for the turns so far, that
+/// one is enough, unless the next round moves the vertex further.
 fn following(round: Round) -> Round {
-    let others = CERTAIN * round.others - round.gone;
+    let others = CERTAIN * round.others - round.moved;
     if (round.hits == 1u && others > 0.0) { return Round(round.hit, round.hit + 1u, 0u, 0u, 0.0, others); }
-    return Round(0u, arrayLength(&capsules), 0u, 0u, 0.0, FAR);
+    return Round(step.first_capsule, step.end_capsule, 0u, 0u, 0.0, FAR);
 }
 
-/// Turns a vertex out of a capsule, and says how far.
+/// Turns a vertex out of a capsule, and says how far it moves. `surface` is the displacement of the capsule's surface.
 ///
-/// The deeper it is, the more the turn starts from the way that its edge had before anything moved. The way to where the vertex was
-/// would not do: where a strand crosses a sphere nearly at right angles, each vertex would be turned to the other side than its
-/// parent, by errors that grow. The old way alone would not do either: what is only just touched is to be only just turned.
-fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere: vec4<f32>) -> f32 {
+/// The turn starts from the present edge where the vertex is hardly inside, and from the edge before this kernel where it is deep
+/// inside. The present edge alone would not do: where a strand crosses a sphere nearly at right angles, each vertex would be
+/// turned to the other side than its parent, by errors that grow. The earlier edge alone would not do either: a vertex that is
+/// hardly inside is to be turned hardly at all.
+fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere: vec4<f32>, surface: vec3<f32>) -> f32 {
     let before = direction_or((*contact).point - parent, DOWN);
     let apart = length * distance(before, (*contact).heading);
     let depth = sphere.w - distance((*contact).point, sphere.xyz);
@@ -135,7 +150,8 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
     let turn = turned_out(parent, mix(before, (*contact).heading, weight), length, sphere, (*contact).left);
     let pushed = turn.point - (*contact).point;
     let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
-    (*contact).kept = slid((*contact).kept + pushed, normal, max(dot(pushed, normal), 0.0), step.friction);
+    let relative = (*contact).displacement + pushed - surface;
+    (*contact).displacement = surface + slid(relative, normal, max(dot(pushed, normal), 0.0), step.friction);
     (*contact).point = turn.point;
     (*contact).touched = true;
     (*contact).heading = mix((*contact).heading, direction_or(turn.point - parent, DOWN), weight);
@@ -143,9 +159,14 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
     return sqrt(dot(pushed, pushed));
 }
 
-/// Where the head's motion takes a point. It carries the capsules.
-fn carried(point: vec3<f32>) -> vec3<f32> {
-    return rotate(step.turn, point + step.shift);
+/// The displacement of a capsule's surface at a point about the root, as the point's own is counted: without the share of the
+/// root's motion that `velocity_shock` has added to the point's past.
+fn surface_displacement(root: vec3<f32>, point: vec3<f32>, capsule: u32, strand: u32) -> vec3<f32> {
+    let here = root + in_world(point);
+    let own = in_head(here) - origin_of(capsule_motions[capsule], in_head(here));
+    let with_head = here - rotate_back(step.turn, here) + step.shift;
+    let with_root = here - carried_from(root_of(strand), here) + step.shift;
+    return own + in_head(with_head - step.shock * with_root);
 }
 
 fn in_head(point: vec3<f32>) -> vec3<f32> {

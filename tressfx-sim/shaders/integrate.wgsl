@@ -1,12 +1,10 @@
 // Verlet integration with damping and gravity, and the pull towards the global shape; or back to the rest pose.
 // One thread a vertex of a guide.
 
-import package::constants::{GUIDES, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
-import package::step::Step;
-import package::vector::rotate;
+import package::root::{Root, carried, root_of, shape_of};
+import package::step::step;
 
-@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> previous: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
@@ -14,40 +12,49 @@ import package::vector::rotate;
 @compute @workgroup_size(GROUP)
 fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
              @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    if (i >= GUIDES * VERTICES) { return; }
-    let vertex = i / GUIDES;
-    let place = vertex * STRANDS + i % GUIDES;
+    let guide = thread_index(group, groups, lane);
+    if (guide >= step.guides) { return; }
+    let vertex = group.z;
+    let i = vertex * step.guides + guide;
+    let place = vertex * step.strands + guide;
 
+    let root = root_of(guide);
     let rest_here = rest[i];
-    let shape = rotate(step.head_rotation, rest_here.xyz);
+    let shape = shape_of(root, rest_here.xyz);
     if (step.reset != 0u || rest_here.w == 0.0) {
-        // A pinned vertex goes where the head takes it, so its past does not matter.
+        // A pinned vertex goes where its root takes it, so its past does not matter.
         positions[place] = vec4(shape, rest_here.w);
         previous[i] = vec4(shape, 0.0);
         return;
     }
-    // Both are about where the centre was at the end of the last sub-step.
-    let last = positions[place].xyz;
-    let before = previous[i].xyz;
-    let here = last - step.shift;
-    var goal = here + step.keep * bounded(last - before, before) + step.gravity;
-    @if(global_shape) {
-        // Full at the root, nothing at the end of the range: a strand has no kink where the pull ends.
-        let along = f32(vertex) / f32(VERTICES - 1u) / step.global_range;
-        let fade = max(1.0 - along * along, 0.0);
-        goal += step.global_stiffness * fade * (shape - goal);
-    }
+    let here = positions[place].xyz;
+    let free = moved_on(root, here, previous[i].xyz);
     previous[i] = vec4(here, 0.0);
-    positions[place] = vec4(goal, rest_here.w);
+    positions[place] = vec4(pulled_to_shape(free, shape, vertex), rest_here.w);
+}
+
+/// Where a vertex gets to by its own velocity and gravity.
+fn moved_on(root: Root, here: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
+    return here + step.velocity_kept * bounded(root, here - before, before) + step.gravity;
 }
 
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
-/// speed of the car.
-fn bounded(displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    let carried = rotate(step.turn, before) - before + step.shift;
-    let relative = displacement - carried;
+/// speed of the car. The head's motion counts without the share that `velocity_shock` has made already.
+fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
+    let left = (1.0 - step.shock) * (carried(root, before + step.shift) - before);
+    let relative = displacement - left;
     let squared = dot(relative, relative);
     if (squared <= step.max_displacement * step.max_displacement) { return displacement; }
-    return carried + relative * (step.max_displacement * inverseSqrt(squared));
+    return left + relative * (step.max_displacement * inverseSqrt(squared));
+}
+
+/// A vertex after the pull towards where its root takes the rest pose. The pull is full at the root and nothing at the end of
+/// its range: a strand has no kink where it ends.
+fn pulled_to_shape(point: vec3<f32>, shape: vec3<f32>, vertex: u32) -> vec3<f32> {
+    @if(!global_shape) { return point; }
+    @if(global_shape) {
+        let along = f32(vertex) / f32(step.vertices - 1u) / step.global_range;
+        let fade = max(1.0 - along * along, 0.0);
+        return point + step.global_stiffness * fade * (shape - point);
+    }
 }

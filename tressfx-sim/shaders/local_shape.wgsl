@@ -1,12 +1,11 @@
 // Local shape constraints: each edge wants the angle to the edge before it that it has in the rest pose, and the first edge
-// that to the head. From the root to the tip, several times. One thread a guide.
+// that to its root. From the root to the tip, several times. One thread a guide.
 
-import package::constants::{GUIDES, ITERATIONS, STRANDS, VERTICES};
 import package::grid::{GROUP, thread_index};
-import package::step::Step;
+import package::root::root_of;
+import package::step::step;
 import package::vector::{NO_LENGTH, rotate, turned};
 
-@group(0) @binding(0) var<uniform> step: Step;
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> positions: array<vec4<f32>>;
 
@@ -14,50 +13,57 @@ import package::vector::{NO_LENGTH, rotate, turned};
 fn local_shape(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
-    if (strand >= GUIDES) { return; }
-    for (var iteration = 0u; iteration < ITERATIONS; iteration++) {
+    if (strand >= step.guides) { return; }
+    for (var iteration = 0u; iteration < step.local_iterations; iteration++) {
         walk(strand);
     }
 }
 
+/// The edge that a walk is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge adds the
+/// smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
+struct BentEdge { frame: vec4<f32>, here: vec4<f32>, next: vec4<f32> }
+
 fn walk(strand: u32) {
-    // What the strand has turned so far. It starts as the head does, and each edge adds the smallest turn that explains it:
-    // so a curl that is turned as a whole is still the same curl.
-    var frame = step.head_rotation;
-    // Positions are about the root, see `length`.
+    // Positions are about the root, see `lengths`.
     let root = positions[strand].xyz;
-    var here = vec4(vec3(0.0), positions[strand].w);
-    var next = about(root, positions[STRANDS + strand]);
+    var edge = BentEdge(root_of(strand).rotation, vec4(vec3(0.0), positions[strand].w), from_root(root, positions[step.strands + strand]));
     var rest_here = rest[strand].xyz;
-    var rest_next = rest[GUIDES + strand].xyz;
-    for (var i = 0u; i < VERTICES - 1u; i++) {
+    var rest_next = rest[step.guides + strand].xyz;
+    for (var i = 0u; i < step.vertices - 1u; i++) {
         // Loaded before this vertex is stored: loads behind a store to the same buffer would wait for it.
-        let ahead = min(i + 2u, VERTICES - 1u);
-        let position_ahead = about(root, positions[ahead * STRANDS + strand]);
-        let rest_ahead = rest[ahead * GUIDES + strand].xyz;
+        let ahead = min(i + 2u, step.vertices - 1u);
+        let position_ahead = from_root(root, positions[ahead * step.strands + strand]);
+        let rest_ahead = rest[ahead * step.guides + strand].xyz;
 
-        let goal = rotate(frame, rest_next - rest_here);
-        let mass = here.w + next.w;
-        let share = select(step.local_stiffness / mass, 0.0, mass == 0.0);
-        let correction = share * (goal - (next.xyz - here.xyz));
-        here -= vec4(here.w * correction, 0.0);
-        next += vec4(next.w * correction, 0.0);
-        positions[i * STRANDS + strand] = about(-root, here);
-
-        // An edge without a length turns nothing.
-        let edge = next.xyz - here.xyz;
-        let lengths = vec2(dot(goal, goal), dot(edge, edge));
-        if (min(lengths.x, lengths.y) > NO_LENGTH) {
-            frame = turned(frame, goal * inverseSqrt(lengths.x), edge * inverseSqrt(lengths.y));
-        }
-        here = next;
-        next = position_ahead;
+        edge = bent(edge, rest_next - rest_here);
+        positions[i * step.strands + strand] = from_root(-root, edge.here);
+        edge.here = edge.next;
+        edge.next = position_ahead;
         rest_here = rest_next;
         rest_next = rest_ahead;
     }
-    positions[(VERTICES - 1u) * STRANDS + strand] = about(-root, here);
+    positions[(step.vertices - 1u) * step.strands + strand] = from_root(-root, edge.here);
 }
 
-fn about(origin: vec3<f32>, position: vec4<f32>) -> vec4<f32> {
-    return vec4(position.xyz - origin, position.w);
+/// An edge that has made its share of the way to its rest pose, and the frame behind it.
+fn bent(edge: BentEdge, rest_edge: vec3<f32>) -> BentEdge {
+    var bent = edge;
+    let goal = rotate(edge.frame, rest_edge);
+    let mass = edge.here.w + edge.next.w;
+    let share = select(step.local_stiffness / mass, 0.0, mass == 0.0);
+    let correction = share * (goal - (edge.next.xyz - edge.here.xyz));
+    bent.here -= vec4(edge.here.w * correction, 0.0);
+    bent.next += vec4(edge.next.w * correction, 0.0);
+
+    // An edge without a length turns nothing.
+    let way = bent.next.xyz - bent.here.xyz;
+    let lengths = vec2(dot(goal, goal), dot(way, way));
+    if (min(lengths.x, lengths.y) > NO_LENGTH) {
+        bent.frame = turned(edge.frame, goal * inverseSqrt(lengths.x), way * inverseSqrt(lengths.y));
+    }
+    return bent;
+}
+
+fn from_root(root: vec3<f32>, position: vec4<f32>) -> vec4<f32> {
+    return vec4(position.xyz - root, position.w);
 }

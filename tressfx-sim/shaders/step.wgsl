@@ -1,4 +1,5 @@
-// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one sub-step.
+// What a kernel is told about a sub-step of a section. Lengths are in the unit of the file; shares and displacements are those
+// of one sub-step.
 
 struct Step {
     /// From the axes of the rest pose to those of the world: the rotation of the head at the end of the sub-step.
@@ -7,8 +8,8 @@ struct Step {
     turn: vec4<f32>,
     /// The way that the centre of the groom made with the head during the sub-step. All positions are about that centre.
     shift: vec3<f32>,
-    /// Share of the velocity that is kept.
-    keep: f32,
+    /// Share of the velocity that damping leaves.
+    velocity_kept: f32,
     /// Displacement by gravity.
     gravity: vec3<f32>,
     /// The longest displacement relative to the head.
@@ -25,7 +26,26 @@ struct Step {
     tip_separation: f32,
     /// Share of the head's motion that the strands make at once.
     shock: f32,
+    /// Share by which the way of a vertex is drawn to the mean of its neighbours'.
+    smoothing: f32,
     /// Not 0: the strands go to their rest pose, at rest.
     reset: u32,
-    padding: u32,
+    /// Guides of the section.
+    guides: u32,
+    /// Guides and follow strands of the section.
+    strands: u32,
+    /// Vertices of each strand.
+    vertices: u32,
+    /// Follow strands of each guide.
+    follows: u32,
+    /// Iterations of the local shape constraints.
+    local_iterations: u32,
+    /// Share of the way to where the roots are at the end of the frame that they make in this sub-step.
+    root_share: f32,
+    /// The first capsule that the section collides with.
+    first_capsule: u32,
+    /// The capsule after the last one.
+    end_capsule: u32,
 }
+
+@group(0) @binding(0) var<uniform> step: Step;

@@ -2,6 +2,8 @@
 
 /// Below this squared length a vector has no direction.
 const NO_LENGTH: f32 = 1e-24;
+/// The direction of an edge that has none.
+const DOWN: vec3<f32> = vec3(0.0, -1.0, 0.0);
 
 /// Turns a vector by a unit quaternion.
 fn rotate(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
@@ -12,6 +14,12 @@ fn rotate(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
 /// Turns a vector back.
 fn rotate_back(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return rotate(vec4(-rotation.xyz, rotation.w), v);
+}
+
+/// The rotation that is `second` after `first`.
+fn after(second: vec4<f32>, first: vec4<f32>) -> vec4<f32> {
+    let axis = second.w * first.xyz + first.w * second.xyz + cross(second.xyz, first.xyz);
+    return vec4(axis, second.w * first.w - dot(second.xyz, first.xyz));
 }
 
 /// The direction of a vector, or `otherwise` where it has none.
@@ -31,8 +39,7 @@ fn across(u: vec3<f32>) -> vec3<f32> {
 fn turned(rotation: vec4<f32>, u: vec3<f32>, v: vec3<f32>) -> vec4<f32> {
     let c = 1.0 + dot(u, v);
     let arc = select(vec4(cross(u, v), c), vec4(across(u), 0.0), c < 1e-6);
-    let axis = arc.w * rotation.xyz + rotation.w * arc.xyz + cross(arc.xyz, rotation.xyz);
-    return normalize(vec4(axis, arc.w * rotation.w - dot(arc.xyz, rotation.xyz)));
+    return normalize(after(arc, rotation));
 }
 
 /// Whether all three are numbers. Looks at the bits: compilers may assume that comparisons never see a NaN.

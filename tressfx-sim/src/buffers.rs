@@ -1,14 +1,18 @@
 //! The buffers of a section.
 
-use bytemuck::NoUninit;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use tressfx_core::Result;
 use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Label;
+use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{Strands, about};
+use tressfx_core::view::Pose;
 
+use crate::collider::{GpuCapsule, GpuCapsuleMotion};
 use crate::step::Step;
 
 /// What the simulation of a section reads and writes. Everything but `strands` holds guides alone, vertex-major:
@@ -25,14 +29,61 @@ pub(crate) struct SectionBuffers {
     pub(crate) previous: BufferId,
     /// `vec4<f32>`, `follow * guides + guide`; only where there are follow strands.
     pub(crate) follow_offsets: Option<BufferId>,
-    /// [`Step`].
-    pub(crate) step: BufferId,
+    /// Only where roots have transforms of their own.
+    pub(crate) roots: Option<RootBuffers>,
+    /// What changes from sub-step to sub-step.
+    pub(crate) steps: StepBuffer,
     /// Whether the tip of any guide is pinned.
     pub(crate) pinned_tips: bool,
 }
 
+/// The transforms of roots; an element a guide.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RootBuffers {
+    /// [`RootTransform`] at the end of the frame: what the caller gives.
+    pub(crate) targets: BufferId,
+    /// [`RootTransform`] at the end of the last sub-step.
+    pub(crate) reached: BufferId,
+    /// With the head, now and one sub-step ago; four `vec4<f32>`.
+    pub(crate) now: BufferId,
+}
+
+/// The capsules of a frame, shared by all sections.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CapsuleBuffers {
+    /// [`GpuCapsule`].
+    pub(crate) capsules: BufferId,
+    /// [`GpuCapsuleMotion`].
+    pub(crate) motions: BufferId,
+    /// How many capsules a frame may have.
+    pub(crate) most: usize,
+}
+
+gpu_struct! {
+    /// Where the root of a guide is, within the space of the rest pose: points about the centre of the groom
+    /// ([`HairSim::center`](crate::HairSim::center)) are turned, then moved.
+    pub struct RootTransform {
+        /// A unit quaternion.
+        pub rotation: Vec4,
+        /// Where the centre goes, about the centre; `w` is not read.
+        pub place: Vec4,
+    }
+}
+
+impl RootTransform {
+    /// A root that rides on the head.
+    pub const WITH_HEAD: Self = Self { rotation: Vec4::W, place: Vec4::ZERO };
+
+    /// A pose within the space of the rest pose.
+    pub fn new(center: Vec3, pose: &Pose) -> Self {
+        let (rotation, center) = (pose.rotation.as_dquat().normalize(), center.as_dvec3());
+        let place = rotation * center + pose.translation.as_dvec3() - center;
+        Self { rotation: rotation.as_quat().into(), place: place.as_vec3().extend(0.0) }
+    }
+}
+
 impl SectionBuffers {
-    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3, own_roots: bool) -> Result<Self> {
         let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
         let follows = shape.guides * shape.follows;
@@ -45,42 +96,86 @@ impl SectionBuffers {
                 0 => None,
                 _ => Some(storage(backend, "hair.follow_offsets", 16, follows)?),
             },
-            step: backend.create_buffer(&BufferDesc::uniform("hair.step", size_of::<Step>() as u64))?,
+            roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
+            steps: StepBuffer::new(backend)?,
             pinned_tips: strands.rest.chunks(vertices).any(|strand| strand[vertices - 1].w == 0.0),
         })
     }
 
-    /// What has to be uploaded once.
-    pub(crate) fn uploads(&self, strands: &Strands) -> impl Iterator<Item = Upload> {
-        let always = [
-            Upload::new(self.rest, &strands.interleave(&about(self.strands.center, &strands.rest))),
-            Upload::new(self.rest_lengths, &strands.interleave(&strands.rest_lengths)),
-            Upload::new(self.strands.thickness, &strands.interleave(&strands.thickness)),
-        ];
-        let offsets = self.follow_offsets.map(|buffer| Upload::new(buffer, &strands.follow_offsets));
-        always.into_iter().chain(offsets)
-    }
-
-    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        let StrandBuffers { positions, tangents, thickness, .. } = self.strands;
-        let all = [positions, tangents, thickness, self.rest, self.rest_lengths, self.previous, self.step];
-        for buffer in all.into_iter().chain(self.follow_offsets) {
-            backend.destroy(buffer.into());
+    /// Uploads the rest pose.
+    pub(crate) fn upload(&self, list: &mut PassList, strands: &Strands) {
+        list.upload(self.rest, 0, &strands.interleave(&about(self.strands.center, &strands.rest)));
+        list.upload(self.rest_lengths, 0, &strands.interleave(&strands.rest_lengths));
+        list.upload(self.strands.thickness, 0, &strands.interleave(&strands.thickness));
+        if let Some(buffer) = self.follow_offsets {
+            list.upload(buffer, 0, &strands.follow_offsets);
+        }
+        if let Some(roots) = &self.roots {
+            list.upload(roots.targets, 0, &vec![RootTransform::WITH_HEAD; strands.guides as usize]);
         }
     }
 }
 
-/// Bytes on their way to the start of a buffer.
-#[derive(Debug)]
-pub(crate) struct Upload {
-    pub(crate) buffer: BufferId,
-    pub(crate) bytes: Vec<u8>,
+/// Places for the [`Step`]s of a frame, which are uploaded together. A pass binds one of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepBuffer {
+    buffer: BufferId,
+    /// From place to place, in bytes.
+    stride: u64,
 }
 
-impl Upload {
-    pub(crate) fn new<T: NoUninit>(buffer: BufferId, data: &[T]) -> Self {
-        Self { buffer, bytes: bytemuck::cast_slice(data).to_vec() }
+impl StepBuffer {
+    /// The place of a step that stands alone, such as a reset.
+    pub(crate) const ALONE: usize = 0;
+    /// The place of the first sub-step of a frame.
+    pub(crate) const FIRST: usize = 1;
+    const PLACES: usize = Self::FIRST + CapsuleBuffers::SUB_STEPS;
+
+    fn new(backend: &mut dyn Backend) -> Result<Self> {
+        let stride = (size_of::<Step>() as u64).next_multiple_of(backend.caps().binding_alignment);
+        let buffer = backend.create_buffer(&BufferDesc::uniform("hair.steps", stride * Self::PLACES as u64))?;
+        Ok(Self { buffer, stride })
     }
+
+    /// What a pass binds for each place.
+    pub(crate) fn places(self) -> impl Iterator<Item = Binding> {
+        (0..Self::PLACES as u64).map(move |place| self.buffer.range(place * self.stride, size_of::<Step>() as u64))
+    }
+
+    /// Uploads steps to places from `first` on.
+    pub(crate) fn upload(self, list: &mut PassList, first: usize, steps: &[Step]) {
+        let stride = self.stride as usize;
+        let mut bytes = vec![0u8; stride * steps.len()];
+        for (place, step) in bytes.chunks_exact_mut(stride).zip(steps) {
+            place[..size_of::<Step>()].copy_from_slice(bytemuck::bytes_of(step));
+        }
+        list.upload(self.buffer, self.stride * first as u64, &bytes);
+    }
+}
+
+impl RootBuffers {
+    fn new(backend: &mut dyn Backend, guides: u32) -> Result<Self> {
+        Ok(Self {
+            targets: storage(backend, "hair.root_targets", 32, guides)?,
+            reached: storage(backend, "hair.roots_reached", 32, guides)?,
+            now: storage(backend, "hair.roots", 64, guides)?,
+        })
+    }
+}
+
+impl CapsuleBuffers {
+    /// For so many capsules in a frame of a groom of so many sections.
+    pub(crate) fn new(backend: &mut dyn Backend, most: usize, sections: usize) -> Result<Self> {
+        let count = (most * sections.max(1) * Self::SUB_STEPS) as u32;
+        Ok(Self {
+            capsules: storage(backend, "hair.capsules", size_of::<GpuCapsule>() as u64, count)?,
+            motions: storage(backend, "hair.capsule_motions", size_of::<GpuCapsuleMotion>() as u64, count)?,
+            most,
+        })
+    }
+
+    /// Of so many sub-steps the capsules are uploaded at once.
+    pub(crate) const SUB_STEPS: usize = 16;
 }
 
 /// A storage buffer for `count` elements, filled with zeros.

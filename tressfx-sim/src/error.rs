@@ -15,6 +15,44 @@ pub enum SimError {
         /// What it is: `head`, `wind.velocity`...
         name: &'static str,
     },
+    /// A quaternion that is no rotation: its length is not 1. A head, a root or a collider cannot be scaled.
+    #[error("step: {name} is no rotation, its quaternion has the length {length}")]
+    NoRotation {
+        /// What it is.
+        name: &'static str,
+        /// The length of the quaternion.
+        length: f32,
+    },
+    /// A capsule has a number that is not finite or a negative radius.
+    #[error("step: collider {index} has a number that is not finite or a negative radius")]
+    UnsoundCapsule {
+        /// Its index.
+        index: usize,
+    },
+    /// More colliders than the simulation was made for.
+    #[error("step: {given} colliders, the simulation was made for {most}")]
+    TooManyColliders {
+        /// How many were given.
+        given: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// There is no such section.
+    #[error("section {index} of {count}")]
+    NoSection {
+        /// What was asked for.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// Root transforms do not fit the section.
+    #[error("{given} root transforms for {expected} guides")]
+    RootCount {
+        /// How many were given.
+        given: usize,
+        /// How many the section takes: one a guide, or none.
+        expected: usize,
+    },
     /// The backend could not make something.
     #[error(transparent)]
     Backend(#[from] tressfx_core::Error),

@@ -1,12 +1,18 @@
 //! The kernels: one file of WGSL in `shaders/`, one function here and one in [`crate::reference`], all of the same name.
+//!
+//! What a kernel does to the vertices of a strand is in functions beside its entry point, which read and write no buffers of
+//! strands, so that a kernel that does the work of several can import them.
 
 pub(crate) mod collide;
 pub(crate) mod follow;
 pub(crate) mod integrate;
-pub(crate) mod length;
+pub(crate) mod lengths;
 pub(crate) mod local_shape;
+pub(crate) mod recovery;
+pub(crate) mod roots;
 pub(crate) mod tangents;
 pub(crate) mod velocity_shock;
+pub(crate) mod wind;
 
 use std::sync::Arc;
 
@@ -14,7 +20,9 @@ use tressfx_core::Result;
 use tressfx_core::backend::{Backend, ComputeDesc};
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::{Binding, Bindings, Kernel, Module, Shader, ShaderSource, Specialization};
-use tressfx_core::strand_buffers::StrandShape;
+
+use crate::buffers::SectionBuffers;
+use crate::section::Shared;
 
 /// Threads of a group; `package::grid::GROUP` in WGSL.
 const GROUP: u32 = 64;
@@ -22,46 +30,162 @@ const GROUP: u32 = 64;
 /// The WGSL modules that the kernels share.
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
+    ("root", include_str!("../shaders/root.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
-    ("wind", include_str!("../shaders/wind.wgsl")),
 ];
 
 /// A kernel with everything that it needs to run.
 #[derive(Debug)]
 pub(crate) struct Pass {
     kernel: Kernel,
-    bindings: Bindings,
+    /// For each place of [`StepBuffer`](crate::buffers::StepBuffer).
+    bindings: Vec<Bindings>,
     grid: Grid,
 }
 
 impl Pass {
-    pub(crate) fn new(
-        backend: &mut dyn Backend,
-        source: &ShaderSource,
-        specialization: &Specialization,
-        bindings: &[(&str, Binding)],
-        threads: u32,
-    ) -> Result<Self> {
-        let shader = Arc::new(Shader::new(source, specialization)?);
-        let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
-        let bindings = kernel.bind(bindings)?;
-        Ok(Self { kernel, bindings, grid: Grid::for_threads(threads, GROUP) })
-    }
-
-    pub(crate) fn record(&self, list: &mut PassList) {
-        list.compute(&self.kernel, &self.bindings, self.grid);
-    }
-
-    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        backend.destroy_pipeline(self.kernel.pipeline);
+    /// Runs the kernel with the step in a place.
+    pub(crate) fn record(&self, list: &mut PassList, place: usize) {
+        list.compute(&self.kernel, &self.bindings[place], self.grid);
     }
 }
 
-/// What every kernel is compiled for: the counts of its section.
-fn counts(shape: &StrandShape) -> Specialization {
-    Specialization::new()
-        .constant("GUIDES", shape.guides)
-        .constant("STRANDS", shape.strands())
-        .constant("VERTICES", shape.vertices)
+/// The compiled kernels of a simulation. Sections with the same features share them.
+#[derive(Debug, Default)]
+pub(crate) struct Kernels(Vec<Kernel>);
+
+impl Kernels {
+    /// The kernel of a source with these features, compiled if it is the first time.
+    fn get(
+        &mut self,
+        backend: &mut dyn Backend,
+        source: &ShaderSource,
+        specialization: &Specialization,
+    ) -> Result<Kernel> {
+        let known =
+            |kernel: &&Kernel| kernel.shader.label == source.label && kernel.shader.specialization == *specialization;
+        if let Some(kernel) = self.0.iter().find(known) {
+            return Ok(kernel.clone());
+        }
+        let shader = Arc::new(Shader::new(source, specialization)?);
+        let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
+        self.0.push(kernel.clone());
+        Ok(kernel)
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Forgets all but the first ones: the others are gone.
+    pub(crate) fn forget_from(&mut self, first: usize) {
+        self.0.truncate(first);
+    }
+}
+
+/// What it takes to make the passes of a section.
+pub(crate) struct PassMaker<'a> {
+    pub(crate) backend: &'a mut dyn Backend,
+    pub(crate) kernels: &'a mut Kernels,
+    pub(crate) buffers: &'a SectionBuffers,
+    pub(crate) shared: &'a Shared,
+}
+
+impl PassMaker<'_> {
+    /// A pass of a kernel that is the same for all sections.
+    fn pass(
+        &mut self,
+        source: &ShaderSource,
+        specialization: &Specialization,
+        resources: &[(&str, Binding)],
+        grid: Grid,
+    ) -> Result<Pass> {
+        let kernel = self.kernels.get(self.backend, source, specialization)?;
+        let at = |step| kernel.bind(&[&[("step", step)], resources].concat());
+        let bindings = self.buffers.steps.places().map(at).collect::<Result<_>>()?;
+        Ok(Pass { kernel, bindings, grid })
+    }
+
+    /// A pass of a kernel that asks for the motion of its roots.
+    fn pass_with_roots(
+        &mut self,
+        source: &ShaderSource,
+        specialization: Specialization,
+        resources: &[(&str, Binding)],
+        grid: Grid,
+    ) -> Result<Pass> {
+        let roots = self.buffers.roots.map(|roots| ("roots", roots.now.into()));
+        let specialization = specialization.feature("roots", roots.is_some());
+        let resources: Vec<_> = resources.iter().copied().chain(roots).collect();
+        self.pass(source, &specialization, &resources, grid)
+    }
+
+    /// A thread a guide.
+    fn guides(&self) -> Grid {
+        Grid::for_threads(self.buffers.strands.shape.guides, GROUP)
+    }
+
+    /// A thread a vertex of a guide: along z the vertices.
+    fn guide_vertices(&self) -> Grid {
+        over_vertices(self.guides(), self.buffers.strands.shape.vertices)
+    }
+
+    /// A thread a vertex of any strand: along z the vertices.
+    fn strand_vertices(&self) -> Grid {
+        let shape = &self.buffers.strands.shape;
+        over_vertices(Grid::for_threads(shape.strands(), GROUP), shape.vertices)
+    }
+}
+
+fn over_vertices(Grid([x, y, _]): Grid, vertices: u32) -> Grid {
+    Grid([x, y, vertices])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The work of several kernels in one, on the vertices of a strand in registers.
+    const FUSED: &str = "
+        import package::integrate::moved_on;
+        import package::lengths::{Placing, Window, place, sweep};
+        import package::local_shape::{BentEdge, bent};
+        import package::root::root_of;
+        import package::step::step;
+        import package::velocity_shock::shocked;
+        import package::vector::DOWN;
+        import package::wind::{across_edge, wind_of};
+
+        @group(0) @binding(1) var<storage, read_write> strand: array<vec4<f32>>;
+
+        @compute @workgroup_size(1)
+        fn fused() {
+            let root = root_of(0u);
+            let last = shocked(root, strand[0].xyz);
+            let free = moved_on(root, last, shocked(root, strand[1].xyz)) + across_edge(wind_of(0u), DOWN);
+            let edge = bent(BentEdge(root.rotation, vec4(last, 0.0), vec4(free, 1.0)), DOWN);
+            var window: Window;
+            var placing = Placing(edge.here, last, vec3(0.0), vec3(0.0), DOWN);
+            sweep(&window, edge.next, 1.0, 1u);
+            strand[1] = vec4(place(&placing, window.vertices[SWEEPS], window.lengths[SWEEPS], last, last, false), 1.0);
+            strand[0] = placing.parent;
+        }";
+
+    #[test]
+    fn one_kernel_can_do_the_work_of_several() {
+        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, velocity_shock::SOURCE, wind::SOURCE];
+        let library: Vec<Module> = LIBRARY.iter().copied().chain(kernels.map(|source| source.root)).collect();
+        let text = format!("import package::constants::SWEEPS;\n{FUSED}");
+        let source = ShaderSource { label: "test.fused", root: ("fused", text.leak()), library: Vec::leak(library) };
+        for roots in [false, true] {
+            let specialization = Specialization::new()
+                .constant("SWEEPS", 1)
+                .constant("CHUNK", 1)
+                .feature("global_shape", true)
+                .feature("pinned_tips", false)
+                .feature("roots", roots);
+            Shader::new(&source, &specialization).unwrap();
+        }
+    }
 }

@@ -12,20 +12,27 @@
 
 mod buffers;
 mod clock;
+mod collider;
 mod error;
+mod input;
 mod kernel;
 pub mod metrics;
 mod params;
-mod path;
 pub mod reference;
 mod section;
 mod sim;
+mod solver;
+mod stage;
 pub mod step;
 mod wind;
 
-pub use clock::{Clock, ClockParams, Frame, StepInput, SubStep};
+pub use buffers::RootTransform;
+pub use clock::{Clock, ClockParams, FramePlan, SubStep};
+pub use collider::{CapsuleMotion, Collider, ColliderMotion};
 pub use error::SimError;
+pub use input::StepInput;
 pub use params::{ParamError, SimParams};
-pub use section::Stage;
 pub use sim::{HairSim, SectionDesc, StepReport};
+pub use solver::Solver;
+pub use stage::Stage;
 pub use wind::Wind;

@@ -20,7 +20,8 @@ pub struct SimParams {
     /// Acceleration by gravity in world space, m/s^2; up to 1000 long.
     pub gravity: Vec3,
     /// Damping of the velocity: in a second it falls to exp(-60 * damping), as in TressFX 4.1. From 0 to 1. The default is
-    /// that of TressFX 4.1.
+    /// that of TressFX 4.1. [`SimParams::shock`] decides what the velocity is measured against: with a shock of 1 the head, with
+    /// 0 the still air, through which a moving head then drags its hair; between them a share of both.
     pub damping: f32,
     /// How stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
     /// allow. It is the share of the way that an edge makes to its place in 1/60 s; what one sees is the stiffness of a
@@ -41,8 +42,9 @@ pub struct SimParams {
     /// Sweeps of the distance constraints in each sub-step, 0 to 16, before each vertex is placed at its exact distance from
     /// its parent. Lengths are exact without any; sweeps let the tip pull the root's side, as a real strand does.
     pub length_iterations: u32,
-    /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1. A smaller
-    /// share leaves them more of their own motion, and makes more of how evenly the head's poses come in.
+    /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1. On a head that
+    /// moves evenly, hair hangs as at rest with 1, and trails with less. A smaller share leaves strands more of their own
+    /// motion, and makes more of how evenly the head's poses come in.
     pub shock: f32,
     /// Above this acceleration of the head, m/s^2, anywhere in the groom's bounds, the strands make its whole motion at once.
     /// The default is above what a shaken head reaches.

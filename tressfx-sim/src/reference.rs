@@ -6,23 +6,32 @@
 mod collide;
 mod follow;
 mod integrate;
-mod length;
+mod lengths;
 mod local_shape;
+mod recovery;
+mod roots;
 mod simulation;
 mod tangents;
 mod vector;
 mod velocity_shock;
+mod wind;
 
 use glam::{DVec3, Vec4};
+
+use crate::step::Step;
+use roots::RootMotion;
 
 pub use collide::collide;
 pub use follow::follow;
 pub use integrate::integrate;
-pub use length::length;
+pub use lengths::lengths;
 pub use local_shape::local_shape;
+pub use recovery::recovery;
+pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
 pub use tangents::tangents;
 pub use velocity_shock::velocity_shock;
+pub use wind::wind;
 
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]
@@ -35,11 +44,17 @@ pub struct Guide<'a> {
     pub positions: &'a mut [DVec3],
     /// Position of every vertex one sub-step ago.
     pub previous: &'a mut [DVec3],
+    /// The root, if it has a transform of its own.
+    pub own_root: Option<GuideRoot>,
 }
 
 impl Guide<'_> {
     fn vertices(&self) -> usize {
         self.rest.len()
+    }
+
+    fn root(&self, step: &Step) -> RootMotion {
+        RootMotion::new(step, self.own_root.as_ref())
     }
 
     fn inverse_mass(&self, vertex: usize) -> f64 {

@@ -1,29 +1,51 @@
 //! The simulation of a groom.
 
 use glam::{Quat, Vec3};
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::{Backend, Owner};
+use tressfx_core::id::BufferId;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::{Bounds, Strands};
 use tressfx_core::view::Pose;
 
-use crate::buffers::{Upload, storage};
-use crate::clock::{Clock, ClockParams, StepInput, SubStep};
+use crate::buffers::{CapsuleBuffers, RootTransform, StepBuffer, storage};
+use crate::clock::{Clock, ClockParams, SubStep};
+use crate::collider::{CapsuleList, CapsuleMotion};
 use crate::error::SimError;
-use crate::kernel::collide::GpuCapsule;
+use crate::input::{StepInput, check_pose};
+use crate::kernel::Kernels;
 use crate::params::SimParams;
-use crate::section::{Section, Shared, Stage};
+use crate::section::{Shared, SimSection};
+use crate::solver::{Conditions, Solver};
+use crate::stage::Stage;
 use crate::step::Step;
-use crate::wind::Wind;
 
 /// A section of a groom to be simulated.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SectionDesc<'a> {
     /// Its strands.
     pub strands: &'a Strands,
     /// How they move.
     pub params: SimParams,
+    /// What solves their equations of motion.
+    pub solver: Solver,
+    /// Whether roots have transforms of their own ([`HairSim::set_roots`]). Where they have not, all ride on the head.
+    pub own_roots: bool,
+}
+
+impl<'a> SectionDesc<'a> {
+    /// Strands whose roots ride on the head.
+    pub fn new(strands: &'a Strands, params: SimParams) -> Self {
+        Self { strands, params, solver: Solver::default(), own_roots: false }
+    }
+
+    /// The same with roots that have transforms of their own.
+    #[must_use]
+    pub fn with_own_roots(self) -> Self {
+        Self { own_roots: true, ..self }
+    }
 }
 
 /// What a frame did.
@@ -48,76 +70,121 @@ pub struct StepReport {
 /// bits. [`HairSim::pose`] takes them into the world.
 #[derive(Debug)]
 pub struct HairSim {
-    sections: Vec<Section>,
+    sections: Vec<SimSection>,
     strand_buffers: Vec<StrandBuffers>,
+    kernels: Kernels,
     shared: Shared,
     clock: Clock,
     resets: u64,
-    /// What the first frame has to upload.
-    uploads: Vec<Upload>,
+    /// The capsules of the frame that is being recorded; kept for its memory.
+    capsules: CapsuleList,
+    /// Of everything above.
+    owner: Owner,
 }
 
 impl HairSim {
-    /// Makes everything that the simulation needs. The uploads of the rest pose are part of the first [`HairSim::step`].
+    /// Makes everything that the simulation needs, and uploads the rest pose.
     ///
-    /// `capsules` are what the strands collide with; they are in the space of the rest pose and move with the head.
+    /// A frame may have up to `max_colliders` colliders. Where that is 0, no kernel for collisions is compiled.
     ///
     /// # Errors
     /// A parameter outside its range, or what the backend says.
-    pub fn new(backend: &mut dyn Backend, sections: &[SectionDesc], capsules: &[Capsule]) -> Result<Self, SimError> {
+    pub fn new(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        sections: &[SectionDesc],
+        max_colliders: usize,
+    ) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
         let bounds =
             sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
         let clock = Clock::new(ClockParams::default(), bounds)?;
-        let mut uploads = Vec::new();
-        let shared = Shared {
-            capsules: match capsules.len() {
-                0 => None,
-                count => Some(storage(backend, "hair.capsules", size_of::<GpuCapsule>() as u64, count as u32)?),
-            },
-            non_finite: storage(backend, "hair.non_finite", 4, 1)?,
-        };
-        if let Some(buffer) = shared.capsules {
-            let capsules: Vec<_> = capsules.iter().map(|capsule| GpuCapsule::about(clock.center(), capsule)).collect();
-            uploads.push(Upload::new(buffer, &capsules));
-        }
-        let mut made = Vec::with_capacity(sections.len());
-        for desc in sections {
-            let section = Section::new(backend, desc, clock.center(), &shared)?;
-            uploads.extend(section.buffers.uploads(desc.strands));
-            made.push(section);
+        let ((shared, kernels, made), owner) = Owner::build(backend, |backend| {
+            let shared = Shared {
+                capsules: match max_colliders {
+                    0 => None,
+                    most => Some(CapsuleBuffers::new(backend, most, sections.len())?),
+                },
+                non_finite: storage(backend, "hair.non_finite", 4, 1)?,
+            };
+            let mut kernels = Kernels::default();
+            let mut made = Vec::with_capacity(sections.len());
+            for desc in sections {
+                made.push(SimSection::new(backend, &mut kernels, desc, clock.center(), &shared)?);
+            }
+            Ok::<_, tressfx_core::Error>((shared, kernels, made))
+        })?;
+        for (section, desc) in made.iter().zip(sections) {
+            section.buffers.upload(list, desc.strands);
         }
         let strand_buffers = made.iter().map(|section| section.buffers.strands).collect();
-        Ok(Self { sections: made, strand_buffers, shared, clock, resets: 0, uploads })
+        let capsules = CapsuleList::default();
+        Ok(Self { sections: made, strand_buffers, kernels, shared, clock, resets: 0, capsules, owner })
     }
 
     /// Records a frame: any number of sub-steps, follow strands and tangents. Sections are recorded stage by stage, so that
     /// no pass has to wait for the one before it more often than it must.
     ///
     /// # Errors
-    /// Something in the input that is not finite or out of range; nothing is recorded then.
+    /// Something in the input that is not finite or out of range, or too many colliders; nothing is recorded then.
     pub fn step(&mut self, list: &mut PassList, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
-        for Upload { buffer, bytes } in self.uploads.drain(..) {
-            list.upload(buffer, 0, &bytes);
+        let most = self.shared.capsules.map_or(0, |buffers| buffers.most);
+        if input.colliders.len() > most {
+            return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
-        let frame = self.clock.advance(input.dt, input.head);
-        if let Some(rotation) = frame.reset {
+        let plan = self.clock.advance(input.dt, input.head);
+        if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
         }
-        for sub_step in &frame.sub_steps {
-            self.record_sub_step(list, sub_step, input.wind.as_ref());
+        for sub_steps in plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS) {
+            self.record_sub_steps(list, sub_steps, input);
         }
         let report = StepReport {
-            sub_steps: frame.sub_steps.len() as u32,
-            reset: frame.reset.is_some(),
-            teleported: frame.teleported,
-            dropped: frame.dropped,
+            sub_steps: plan.sub_steps.len() as u32,
+            reset: plan.reset.is_some(),
+            teleported: plan.teleported,
+            dropped: plan.dropped,
         };
         if report.reset || report.sub_steps > 0 {
-            Stage::FRAME_END.iter().for_each(|&stage| self.record_stage(list, stage, false));
+            let last = plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS).last();
+            let place = last.map_or(StepBuffer::ALONE, |last| StepBuffer::FIRST + last.len() - 1);
+            for stage in Solver::FRAME_END {
+                self.sections.iter().for_each(|section| section.record(list, stage, place));
+            }
         }
         Ok(report)
+    }
+
+    /// Says where the roots of a section are at the end of the next frame: a pose a guide, within the space of the rest pose;
+    /// the head is applied after it. An identity rides on the head. Guides are in the order of [`Strands::rest`].
+    ///
+    /// Transforms stay until they are given again. Within a frame roots go evenly from where they were.
+    ///
+    /// # Errors
+    /// A section whose roots ride on the head or that does not exist, another number of poses than guides, and poses that are
+    /// not finite or no rotations.
+    pub fn set_roots(&self, list: &mut PassList, section: usize, poses: &[Pose]) -> Result<(), SimError> {
+        let index = section;
+        let Some(section) = self.sections.get(index) else {
+            return Err(SimError::NoSection { index, count: self.sections.len() });
+        };
+        let roots = section.buffers.roots;
+        let expected = roots.map_or(0, |_| section.info.shape.guides as usize);
+        let Some(roots) = roots.filter(|_| poses.len() == expected) else {
+            return Err(SimError::RootCount { given: poses.len(), expected });
+        };
+        poses.iter().try_for_each(|pose| check_pose(pose, "root.rotation", "root.translation"))?;
+        let center = self.clock.center();
+        let transforms: Vec<_> = poses.iter().map(|pose| RootTransform::new(center, pose)).collect();
+        list.upload(roots.targets, 0, &transforms);
+        Ok(())
+    }
+
+    /// The buffer that [`HairSim::set_roots`] fills, a [`RootTransform`] a guide, for a kernel that does it on the GPU; `None`
+    /// where roots ride on the head, or there is no such section.
+    pub fn root_transforms(&self, section: usize) -> Option<BufferId> {
+        Some(self.sections.get(section)?.buffers.roots?.targets)
     }
 
     /// Puts the strands to rest where the head is, with the next frame.
@@ -172,8 +239,8 @@ impl HairSim {
         self.sections[section].params()
     }
 
-    /// Changes the parameters of a section, from the next frame on. Pipelines are made anew only where a pass comes, goes or
-    /// changes its iterations.
+    /// Changes the parameters of a section, from the next frame on. Kernels are compiled only where the
+    /// global shape comes or goes, or the length constraints change their iterations, and once for each.
     ///
     /// # Errors
     /// A parameter outside its range, or what the backend says; nothing changes then.
@@ -182,7 +249,13 @@ impl HairSim {
     /// If there is no such section.
     pub fn set_params(&mut self, backend: &mut dyn Backend, section: usize, params: SimParams) -> Result<(), SimError> {
         params.validate()?;
-        Ok(self.sections[section].set_params(backend, params, &self.shared)?)
+        let Self { sections, kernels, shared, owner, .. } = self;
+        let known = kernels.count();
+        let changed = owner.change(backend, |backend| sections[section].set_params(backend, kernels, params, shared));
+        if changed.is_err() {
+            kernels.forget_from(known);
+        }
+        Ok(changed?)
     }
 
     /// Brings the positions of all strands back, a ticket each section: `vec4<f32>`, vertex-major over all strands; position
@@ -197,7 +270,7 @@ impl HairSim {
     /// Brings the positions of the guides one sub-step ago back, a ticket each section: `vec4<f32>`, vertex-major over the
     /// guides; `w` is 0.
     pub fn read_previous(&self, list: &mut PassList) -> Vec<Ticket> {
-        let read = |section: &Section| {
+        let read = |section: &SimSection| {
             let bytes = 16 * u64::from(section.buffers.strands.shape.guide_vertices());
             list.read_buffer(section.buffers.previous, 0, bytes)
         };
@@ -215,40 +288,91 @@ impl HairSim {
     /// # Panics
     /// If there is no such section.
     pub fn record_step(&self, list: &mut PassList, section: usize, step: &Step) {
-        list.upload(self.sections[section].buffers.step, 0, &[*step]);
+        self.sections[section].buffers.steps.upload(list, StepBuffer::ALONE, &[*step]);
     }
 
-    /// Records one kernel of all sections, or nothing where their parameters leave it out. [`HairSim::step`] does this; tests
-    /// and measurements of single kernels do it themselves.
-    pub fn record_stage(&self, list: &mut PassList, stage: Stage, wind: bool) {
-        self.sections.iter().for_each(|section| section.record(list, stage, wind));
+    /// Records capsules for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
+    /// themselves. The capsules are about the centre of the groom.
+    ///
+    /// # Errors
+    /// More capsules than the simulation was made for.
+    pub fn record_capsules(&self, list: &mut PassList, capsules: &[(Capsule, CapsuleMotion)]) -> Result<(), SimError> {
+        let most = self.shared.capsules.map_or(0, |buffers| buffers.most);
+        if capsules.len() > most {
+            return Err(SimError::TooManyColliders { given: capsules.len(), most });
+        }
+        self.upload_capsules(list, &capsules.iter().copied().collect());
+        Ok(())
+    }
+
+    /// Records one kernel of all sections, or nothing where a section has none. [`HairSim::step`] does this; tests and
+    /// measurements of single kernels do it themselves.
+    pub fn record_stage(&self, list: &mut PassList, stage: Stage) {
+        self.sections.iter().for_each(|section| section.record(list, stage, StepBuffer::ALONE));
     }
 
     /// Frees everything.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        for buffer in self.shared.capsules.into_iter().chain([self.shared.non_finite]) {
-            backend.destroy(buffer.into());
+        self.owner.destroy(backend);
+    }
+
+    fn upload_capsules(&self, list: &mut PassList, capsules: &CapsuleList) {
+        if let Some(buffers) = self.shared.capsules.filter(|_| !capsules.capsules.is_empty()) {
+            list.upload(buffers.capsules, 0, &capsules.capsules);
+            list.upload(buffers.motions, 0, &capsules.motions);
         }
-        self.sections.into_iter().for_each(|section| section.destroy(backend));
     }
 
     fn record_reset(&mut self, list: &mut PassList, rotation: Quat) {
         self.resets += 1;
-        for (index, section) in self.sections.iter().enumerate() {
-            self.record_step(list, index, &Step::reset(section.params(), &section.units, rotation));
+        for section in &self.sections {
+            let step = Step::reset(section.params(), &section.info, rotation);
+            section.buffers.steps.upload(list, StepBuffer::ALONE, &[step]);
         }
-        self.record_stage(list, Stage::Integrate, false);
+        Solver::RESET.iter().for_each(|&stage| self.record_stage(list, stage));
     }
 
-    fn record_sub_step(&self, list: &mut PassList, sub_step: &SubStep, wind: Option<&Wind>) {
+    fn record_sub_steps(&mut self, list: &mut PassList, sub_steps: &[SubStep], input: &StepInput) {
+        let mut capsules = std::mem::take(&mut self.capsules);
+        capsules.clear();
+        let center = self.clock.center();
+        let mut each_section = |sub_step: &SubStep| -> Vec<[u32; 2]> {
+            let sections = 0..self.sections.len();
+            sections.map(|section| capsules.add(input.colliders, section, center, sub_step)).collect()
+        };
+        let ranges: Vec<_> = sub_steps.iter().map(&mut each_section).collect();
+        self.upload_capsules(list, &capsules);
         for (index, section) in self.sections.iter().enumerate() {
-            self.record_step(list, index, &Step::new(section.params(), &section.units, sub_step, wind));
+            let step = |(sub_step, ranges): (&SubStep, &Vec<[u32; 2]>)| {
+                let [first, end] = ranges[index];
+                Step::new(section.params(), &section.info, sub_step, input.wind.as_ref()).with_capsules(first, end)
+            };
+            let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
+            section.buffers.steps.upload(list, StepBuffer::FIRST, &steps);
         }
-        let still = sub_step.turn == Quat::IDENTITY && sub_step.shift == Vec3::ZERO;
-        for stage in Stage::SUB_STEP {
-            // A head that has not moved gives no shock.
-            if !(still && stage == Stage::VelocityShock) {
-                self.record_stage(list, stage, wind.is_some());
+        for (index, (sub_step, ranges)) in sub_steps.iter().zip(&ranges).enumerate() {
+            self.record_sub_step(list, StepBuffer::FIRST + index, sub_step, input.wind.is_some(), ranges);
+        }
+        self.capsules = capsules;
+    }
+
+    /// `place` is where the steps are, `capsules` are the ranges of capsules of each section.
+    fn record_sub_step(
+        &self,
+        list: &mut PassList,
+        place: usize,
+        sub_step: &SubStep,
+        wind: bool,
+        capsules: &[[u32; 2]],
+    ) {
+        let stages = |section: &SimSection| section.solver().sub_step();
+        let most = self.sections.iter().map(|section| stages(section).len()).max().unwrap_or(0);
+        for index in 0..most {
+            for (section, &[first, end]) in self.sections.iter().zip(capsules) {
+                let own_roots = section.buffers.roots.is_some();
+                let conditions = Conditions::new(sub_step, own_roots, wind, first < end);
+                let stage = stages(section).get(index).filter(|&&stage| section.needs(stage, conditions));
+                stage.iter().for_each(|&&stage| section.record(list, stage, place));
             }
         }
     }

@@ -7,10 +7,13 @@
 //!   spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller, Chentanez 2016).
 //!   It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
 //! * the shock is a share of the head's motion, not of a time, and stays as it is: in any number of sub-steps the strands
-//!   make the same share of the motion at once.
+//!   make the same share of the motion at once. It is made before the integration, so that damping acts on what is left: with
+//!   a shock of 1 on the velocity relative to the head, with 0 on that relative to the air.
 
 use glam::{Quat, Vec3, Vec4};
 use tressfx_core::gpu_struct;
+use tressfx_core::strand_buffers::StrandShape;
+use tressfx_core::strands::Strands;
 
 use crate::clock::SubStep;
 use crate::params::SimParams;
@@ -30,8 +33,8 @@ gpu_struct! {
         pub turn: Vec4,
         /// The way that the centre of the groom made with the head during the sub-step. All positions are about that centre.
         pub shift: Vec3,
-        /// Share of the velocity that is kept.
-        pub keep: f32,
+        /// Share of the velocity that damping leaves.
+        pub velocity_kept: f32,
         /// Displacement by gravity.
         pub gravity: Vec3,
         /// The longest displacement relative to the head.
@@ -50,20 +53,49 @@ gpu_struct! {
         pub tip_separation: f32,
         /// Share of the head's motion that the strands make at once.
         pub shock: f32,
+        /// Share by which the way of a vertex is drawn to the mean of its neighbours'.
+        pub smoothing: f32,
         /// Not 0: the strands go to their rest pose, at rest.
         pub reset: u32,
-        /// Nothing.
-        pub padding: u32,
+        /// Guides of the section.
+        pub guides: u32,
+        /// Guides and follow strands of the section.
+        pub strands: u32,
+        /// Vertices of each strand.
+        pub vertices: u32,
+        /// Follow strands of each guide.
+        pub follows: u32,
+        /// Iterations of the local shape constraints.
+        pub local_iterations: u32,
+        /// Share of the way to where the roots are at the end of the frame that they make in this sub-step.
+        pub root_share: f32,
+        /// The first capsule that the section collides with.
+        pub first_capsule: u32,
+        /// The capsule after the last one.
+        pub end_capsule: u32,
     }
 }
 
 /// What a step needs to know about a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Units {
+pub struct SectionInfo {
+    /// How many strands of how many vertices it has.
+    pub shape: StrandShape,
     /// Metres that a unit of the file stands for.
     pub metres_per_unit: f32,
     /// The groom's own tip separation, where the parameters give none.
     pub tip_separation: f32,
+}
+
+impl SectionInfo {
+    /// That of a section of these strands.
+    pub fn of(strands: &Strands) -> Self {
+        Self {
+            shape: StrandShape::of(strands),
+            metres_per_unit: strands.metres_per_unit,
+            tip_separation: strands.tip_separation,
+        }
+    }
 }
 
 /// The share of the way that a shape constraint moves a vertex in a step of `length` seconds.
@@ -73,36 +105,39 @@ pub fn spring_share(stiffness: f32, length: f64) -> f64 {
     spring / (1.0 - stiffness + spring)
 }
 
+/// How strongly the ways of neighbouring vertices are drawn together in strands of so many vertices.
+fn smoothing(vertices: u32) -> f32 {
+    ((vertices * vertices) as f32 / 1000.0).min(0.25)
+}
+
 impl Step {
     /// The strands go to rest on a head that is turned so.
-    pub fn reset(params: &SimParams, units: &Units, rotation: Quat) -> Self {
-        let still = SubStep {
-            length: REFERENCE_STEP,
-            length_ratio: 1.0,
-            time: 0.0,
-            rotation,
-            turn: Quat::IDENTITY,
-            shift: Vec3::ZERO,
-            acceleration: 0.0,
-        };
-        Self { reset: 1, ..Self::new(params, units, &still, None) }
+    pub fn reset(params: &SimParams, info: &SectionInfo, rotation: Quat) -> Self {
+        let still = SubStep::at_rest(REFERENCE_STEP, rotation);
+        Self { reset: 1, ..Self::new(params, info, &still, None) }
     }
 
-    /// Converts the parameters of a section for a sub-step.
-    pub fn new(params: &SimParams, units: &Units, sub: &SubStep, wind: Option<&Wind>) -> Self {
+    /// The same, with the capsules that the section collides with.
+    #[must_use]
+    pub fn with_capsules(self, first: u32, end: u32) -> Self {
+        Self { first_capsule: first, end_capsule: end, ..self }
+    }
+
+    /// Converts the parameters of a section for a sub-step without capsules.
+    pub fn new(params: &SimParams, info: &SectionInfo, sub: &SubStep, wind: Option<&Wind>) -> Self {
         let square = sub.length * sub.length;
-        let metres = f64::from(units.metres_per_unit);
+        let metres = f64::from(info.metres_per_unit);
         let max_displacement = f64::from(params.max_speed) * sub.length / metres;
         let drag = f64::from(params.wind_drag) * square / metres;
         let blow = |corner: Vec3| (corner.as_dvec3() * drag).clamp_length_max(max_displacement).as_vec3().extend(0.0);
         let iterations = f64::from(params.local_iterations);
         let local = spring_share(params.local_stiffness, sub.length);
-        let shocked = sub.acceleration * units.metres_per_unit > params.shock_acceleration;
+        let shocked = sub.acceleration * info.metres_per_unit > params.shock_acceleration;
         Self {
             head_rotation: sub.rotation.into(),
             turn: sub.turn.into(),
             shift: sub.shift,
-            keep: ((-60.0 * f64::from(params.damping) * sub.length).exp() * sub.length_ratio) as f32,
+            velocity_kept: ((-60.0 * f64::from(params.damping) * sub.length).exp() * sub.length_ratio) as f32,
             gravity: (params.gravity.as_dvec3() * (square / metres)).as_vec3(),
             max_displacement: max_displacement as f32,
             wind: wind.map_or([Vec4::ZERO; 4], |wind| wind.corners(sub.time).map(blow)),
@@ -115,10 +150,18 @@ impl Step {
             // The iterations share the stiffness: n of them, one after the other, make as much of the way as one would.
             local_stiffness: -((-local).ln_1p() / iterations).exp_m1() as f32,
             friction: params.friction,
-            tip_separation: params.tip_separation.unwrap_or(units.tip_separation),
+            tip_separation: params.tip_separation.unwrap_or(info.tip_separation),
             shock: if shocked { 1.0 } else { params.shock },
+            smoothing: smoothing(info.shape.vertices),
             reset: 0,
-            padding: 0,
+            guides: info.shape.guides,
+            strands: info.shape.strands(),
+            vertices: info.shape.vertices,
+            follows: info.shape.follows,
+            local_iterations: params.local_iterations,
+            root_share: sub.share_of_rest as f32,
+            first_capsule: 0,
+            end_capsule: 0,
         }
     }
 }

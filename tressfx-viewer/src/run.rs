@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::Pose;
 use tressfx_sim::metrics::{self, EdgeError};
-use tressfx_sim::{HairSim, SectionDesc, StepInput, Wind};
+use tressfx_sim::{Collider, HairSim, SectionDesc, StepInput, Wind};
 
 use crate::backend;
 use crate::cli::{self, BackendName};
@@ -32,6 +32,8 @@ pub(crate) struct Run {
     /// Frames that were simulated.
     frame: u32,
     wind: Option<Wind>,
+    /// What the hair collides with; it moves with the head.
+    colliders: Vec<Collider<'static>>,
 }
 
 impl Run {
@@ -43,10 +45,12 @@ impl Run {
             .sections
             .iter()
             .enumerate()
-            .map(|(index, strands)| SectionDesc { strands, params: params.sim(index).clone() })
+            .map(|(index, strands)| SectionDesc::new(strands, params.sim(index).clone()))
             .collect();
-        let capsules = [&groom.capsules[..], &params.capsule].concat();
-        let mut sim = HairSim::new(&mut *backend, &sections, &capsules)?;
+        let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());
+        let mut uploads = PassList::new();
+        let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
+        backend.run(&uploads)?;
         sim.set_clock_params(params.clock)?;
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
@@ -58,7 +62,7 @@ impl Run {
             BackendName::Wgpu | BackendName::Both => "wgpu",
         };
         let (times, trace) = (PassTimes::default(), Trace::new());
-        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind })
+        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind, colliders })
     }
 
     /// Records the next frame of the simulation. The motion is known between frames too, so few frames do not make it coarser.
@@ -67,7 +71,8 @@ impl Run {
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
         for part in 1..=parts as u32 {
             let head = self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
-            self.sim.step(&mut list, &StepInput { dt: 1.0 / (args.fps * parts), head, wind: self.wind })?;
+            let input = StepInput::new(1.0 / (args.fps * parts), head).with_colliders(&self.colliders);
+            self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
         }
         self.frame += 1;
         Ok(list)

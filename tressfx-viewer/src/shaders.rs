@@ -5,14 +5,13 @@ use std::fs;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
-use glam::Vec3;
 use serde::Serialize;
 use tressfx_core::backend::{Caps, DepthOrder, Format};
 use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
-use tressfx_core::shape::Capsule;
 use tressfx_render::{HairRenderer, RenderDesc, ScenePass};
 use tressfx_sim::{HairSim, SectionDesc};
 
@@ -110,7 +109,8 @@ pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
     Ok(())
 }
 
-/// The kernels that simulating and rendering the groom compiles; with capsules, in wind and without.
+/// The kernels that simulating and rendering the groom compiles; with capsules, in wind, with roots that ride on the
+/// head and with roots of their own.
 fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let groom = Groom::load(std::slice::from_ref(&args.groom), args.follow)?;
     let params = Params::read(args.params.as_deref(), 1)?;
@@ -119,10 +119,9 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
-    let section = SectionDesc { strands: &groom.sections[0], params: params.sim(0).clone() };
-    // How many there are is read from the buffer.
-    let capsule = Capsule { a: Vec3::ZERO, radius_a: 0.0, b: Vec3::ZERO, radius_b: 0.0 };
-    HairSim::new(&mut backend, &[section], &[capsule])?;
+    let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone());
+    let sections = [section.clone(), section.with_own_roots()];
+    HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
     HairRenderer::new(&mut backend, &RenderDesc { k: args.k, ..RenderDesc::new([64, 64], Format::Rgba16F) })?;
     ScenePass::new(&mut backend, Format::Rgba16F, DepthOrder::Standard)?;
     Ok(backend.shaders)

@@ -77,7 +77,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     }
     assert_eq!(labels, labels_of_kernels());
     let both = |name| [format!("{name} false"), format!("{name} true")];
-    assert_eq!(features, ["global_shape", "pinned_tips", "wind"].into_iter().flat_map(both).collect());
+    assert_eq!(features, ["global_shape", "pinned_tips", "roots"].into_iter().flat_map(both).collect());
 }
 
 /// Every binding stands in the text, with its name in the line that says where it is.
@@ -156,19 +156,19 @@ fn compilers_refuse_a_broken_kernel() {
 #[test]
 fn one_kernel_is_chosen_by_its_name() {
     let folder = folder("chosen");
-    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.length"]);
+    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.lengths"]);
     let files: Vec<_> = entries.iter().map(|entry| file_of(entry, "hlsl")).collect();
-    assert_eq!(files, ["hair.sim.length.comp.hlsl", "hair.sim.length.wind.comp.hlsl"]);
-    assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 2 * 6 + 1);
-    let calm = &entries[0];
-    assert_eq!((&calm["constants"]["GUIDES"], &calm["constants"]["VERTICES"]), (&40.into(), &3.into()));
-    assert_eq!(calm["workgroup_size"], serde_json::json!([64, 1, 1]));
-    assert_eq!(calm["bindings"][0]["places"]["hlsl"], "register(b0)");
-    let step = calm["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
+    assert_eq!(files, ["hair.sim.lengths.comp.hlsl"]);
+    assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 6 + 1);
+    let lengths = &entries[0];
+    assert_eq!((&lengths["constants"]["SWEEPS"], &lengths["constants"]["CHUNK"]), (&2.into(), &5.into()));
+    assert_eq!(lengths["workgroup_size"], serde_json::json!([64, 1, 1]));
+    assert_eq!(lengths["bindings"][0]["places"]["hlsl"], "register(b0)");
+    let step = lengths["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
     assert_eq!(step["fields"][2], serde_json::json!({ "name": "shift", "type": "vec3<f32>", "offset": 32 }));
-    let output = tressfx(&folder, &["--kernel", "hair.sim.lenght", "--out", "none"]);
+    let output = tressfx(&folder, &["--kernel", "hair.sim.lenghts", "--out", "none"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));
-    assert!(message.contains("`hair.sim.lenght`") && message.contains("hair.sim.length, "), "{message}");
+    assert!(message.contains("`hair.sim.lenghts`") && message.contains("hair.sim.lengths, "), "{message}");
     assert!(!folder.join("none").exists());
 }

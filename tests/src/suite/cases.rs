@@ -227,7 +227,9 @@ macro_rules! each_case {
                 integrate_is_as_in_f64: [Compute ReadBack];
                 velocity_shock_is_as_in_f64: [Compute ReadBack];
                 local_shape_is_as_in_f64: [Compute ReadBack];
-                length_is_as_in_f64: [Compute ReadBack];
+                wind_is_as_in_f64: [Compute ReadBack];
+                lengths_is_as_in_f64: [Compute ReadBack];
+                recovery_is_as_in_f64: [Compute ReadBack];
                 collide_is_as_in_f64: [Compute ReadBack];
                 follow_is_as_in_f64: [Compute ReadBack];
                 tangents_are_as_in_f64: [Compute ReadBack];

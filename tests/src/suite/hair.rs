@@ -6,8 +6,8 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_render::{Material, reference as picture};
 use tressfx_sim::reference::{self, Guide};
-use tressfx_sim::step::{Step, Units};
-use tressfx_sim::{SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
+use tressfx_sim::step::{SectionInfo, Step};
+use tressfx_sim::{CapsuleMotion, SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
 
 use super::subject::Subject;
 use crate::render::{Groom, Stage};
@@ -32,27 +32,23 @@ fn capsules(strands: &Strands) -> Vec<Capsule> {
 /// A sub-step in which everything happens, and nothing moves further than the shortest edge is long.
 fn step(strands: &Strands) -> Step {
     let turn = Quat::from_euler(EulerRot::XYZ, 0.003, -0.002, 0.004);
+    let rotation = turn * Motion::wild(strands).head(0.1).rotation;
     let sub_step = SubStep {
-        length: 1.0 / 240.0,
-        length_ratio: 1.0,
         time: 0.7,
-        rotation: turn * Motion::wild(strands).head(0.1).rotation,
         turn,
         shift: Vec3::new(0.0003, -0.0004, 0.0005),
-        acceleration: 0.0,
+        ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
-    let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
-    Step::new(&params(), &units, &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
+    Step::new(&params(), &SectionInfo::of(strands), &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
 }
 
 /// Random strands that have moved for a while, a step for them, and capsules about their centre.
-fn moved(t: &Subject) -> (Rig, Step, Vec<Capsule>) {
+fn moved(t: &Subject) -> (Rig, Step) {
     let strands = random_strands(24, 12, 1, 9);
     let (step, capsules, motion) = (step(&strands), capsules(&strands), Motion::wild(&strands));
     let mut rig = Rig::new(t.another(), vec![(strands, params())], &capsules);
     rig.play(&motion, 0.1, 60);
-    let centred = capsules.iter().map(|capsule| rig.centred(capsule)).collect();
-    (rig, step, centred)
+    (rig, step)
 }
 
 /// Positions and previous positions of the guides.
@@ -62,13 +58,11 @@ fn state(rig: &mut Rig) -> [Vec<DVec3>; 2] {
 }
 
 /// Runs one kernel on the GPU's own state, and `reference` on the same.
-fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[Capsule])) {
-    let (mut rig, step, capsules) = moved(t);
+fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[(Capsule, CapsuleMotion)])) {
+    let (mut rig, step) = moved(t);
+    let capsules = rig.centred();
     let before = state(&mut rig);
-    rig.run(|sim, list| {
-        sim.record_step(list, 0, &step);
-        sim.record_stage(list, kernel, true);
-    });
+    rig.stage(&step, kernel);
     let (found, rest) = ((rig.positions(0), rig.previous(0)), rig.rest(0));
     let strands = &rig.strands[0];
     let [mut positions, mut previous] = before.clone();
@@ -80,6 +74,7 @@ fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32
             rest_lengths: &strands.rest_lengths[range.clone()],
             positions: &mut positions[range.clone()],
             previous: &mut previous[range],
+            own_root: None,
         };
         reference(&step, &mut of_guide, guide, &capsules);
     }
@@ -103,11 +98,40 @@ pub(super) fn local_shape_is_as_in_f64(t: &mut Subject) {
     kernel(t, Kernel::LocalShape, |step, guide, _, _| reference::local_shape(step, guide, iterations));
 }
 
-pub(super) fn length_is_as_in_f64(t: &mut Subject) {
+pub(super) fn wind_is_as_in_f64(t: &mut Subject) {
+    kernel(t, Kernel::Wind, |step, guide, strand, _| reference::wind(step, guide, strand));
+}
+
+pub(super) fn lengths_is_as_in_f64(t: &mut Subject) {
     let sweeps = params().length_iterations;
-    kernel(t, Kernel::Length, |step, guide, strand, _| {
-        assert!(!reference::length(step, guide, strand, sweeps), "finite");
-    });
+    kernel(t, Kernel::Lengths, |step, guide, _, _| reference::lengths(step, guide, sweeps));
+}
+
+pub(super) fn recovery_is_as_in_f64(t: &mut Subject) {
+    let (mut rig, step) = moved(t);
+    let before = state(&mut rig);
+    let (strands, buffers) = (rig.strands[0].clone(), rig.sim.buffers()[0]);
+    let bad = 5 * buffers.shape.strands() + 3;
+    rig.run(|_, list| list.upload(buffers.positions, 16 * u64::from(bad), &[f32::NAN]));
+    rig.stage(&step, Kernel::Recovery);
+    let (found, rest) = ([rig.positions(0), rig.previous(0)], rig.rest(0));
+    let [mut positions, mut previous] = before;
+    let vertices = strands.vertices as usize;
+    let range = 3 * vertices..4 * vertices;
+    positions[range.start + 5].x = f64::NAN;
+    let mut of_guide = Guide {
+        rest: &rest[range.clone()],
+        rest_lengths: &strands.rest_lengths[range.clone()],
+        positions: &mut positions[range.clone()],
+        previous: &mut previous[range],
+        own_root: None,
+    };
+    assert!(reference::recovery(&step, &mut of_guide));
+    for (found, expected) in found.iter().zip([&positions, &previous]) {
+        let error = worst(&strands, &found[..expected.len()], expected);
+        assert!(error <= TOLERANCE, "{error:e} of strand length");
+    }
+    assert_eq!(rig.non_finite(), 1);
 }
 
 pub(super) fn collide_is_as_in_f64(t: &mut Subject) {
@@ -115,26 +139,23 @@ pub(super) fn collide_is_as_in_f64(t: &mut Subject) {
 }
 
 pub(super) fn follow_is_as_in_f64(t: &mut Subject) {
-    let (mut rig, step, _) = moved(t);
-    rig.run(|sim, list| {
-        sim.record_step(list, 0, &step);
-        sim.record_stage(list, Kernel::Follow, false);
-    });
+    let (mut rig, step) = moved(t);
+    rig.stage(&step, Kernel::Follow);
     let positions = rig.positions(0);
     let strands = &rig.strands[0];
     let (guides, all) = (strands.rest.len(), wide(&positions));
     let guide = |index: usize| &all[index * strands.vertices as usize..(index + 1) * strands.vertices as usize];
     let offsets = strands.follow_offsets.iter().enumerate();
     let expected: Vec<_> = offsets
-        .flat_map(|(index, &offset)| reference::follow(&step, guide(index % strands.guides as usize), offset))
+        .flat_map(|(index, &offset)| reference::follow(&step, guide(index % strands.guides as usize), offset, None))
         .collect();
     let error = worst(strands, &positions[guides..], &expected);
     assert!(!expected.is_empty() && error <= TOLERANCE, "{error:e} of strand length");
 }
 
 pub(super) fn tangents_are_as_in_f64(t: &mut Subject) {
-    let (mut rig, ..) = moved(t);
-    rig.run(|sim, list| sim.record_stage(list, Kernel::Tangents, false));
+    let (mut rig, step) = moved(t);
+    rig.stage(&step, Kernel::Tangents);
     let (positions, tangents) = (wide(&rig.positions(0)), rig.tangents(0));
     let vertices = rig.strands[0].vertices as usize;
     for (points, tangents) in positions.chunks(vertices).zip(tangents.chunks(vertices)) {
@@ -149,7 +170,7 @@ pub(super) fn a_second_is_as_in_f64(t: &mut Subject) {
     let strands = random_strands(64, 16, 0, 3);
     let (motion, params) = (Motion::turning(&strands), SimParams::default());
     let mut rig = Rig::new(t.another(), vec![(strands.clone(), params.clone())], &[]);
-    let mut reference = reference::Simulation::new(&[SectionDesc { strands: &strands, params }], &[]).expect("fine");
+    let mut reference = reference::Simulation::new(&[SectionDesc::new(&strands, params)]).expect("fine");
     rig.play(&motion, 1.0, 60);
     for frame in 0..=60 {
         let dt = if frame == 0 { 0.0 } else { 1.0 / 60.0 };

@@ -1,26 +1,20 @@
 //! `hair.sim.follow`: follow strands beside their guides.
 
 use tressfx_core::Result;
-use tressfx_core::backend::Backend;
-use tressfx_core::id::BufferId;
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{ShaderSource, Specialization};
 
-use super::{LIBRARY, Pass, counts};
-use crate::buffers::SectionBuffers;
+use super::{LIBRARY, Pass, PassMaker};
 
-const SOURCE: ShaderSource = ShaderSource {
+pub(crate) const SOURCE: ShaderSource = ShaderSource {
     label: "hair.sim.follow",
     root: ("follow", include_str!("../../shaders/follow.wgsl")),
     library: LIBRARY,
 };
 
-pub(crate) fn follow(backend: &mut dyn Backend, buffers: &SectionBuffers, follow_offsets: BufferId) -> Result<Pass> {
-    let shape = &buffers.strands.shape;
-    let specialization = counts(shape).constant("FOLLOWS", shape.follows);
-    let resources = [
-        ("step", buffers.step.into()),
-        ("follow_offsets", follow_offsets.into()),
-        ("positions", buffers.strands.positions.into()),
-    ];
-    Pass::new(backend, &SOURCE, &specialization, &resources, shape.guide_vertices())
+/// Nothing where there are no follow strands.
+pub(crate) fn follow(maker: &mut PassMaker) -> Result<Option<Pass>> {
+    let buffers = maker.buffers;
+    let Some(offsets) = buffers.follow_offsets else { return Ok(None) };
+    let resources = [("follow_offsets", offsets.into()), ("positions", buffers.strands.positions.into())];
+    maker.pass_with_roots(&SOURCE, Specialization::new(), &resources, maker.guide_vertices()).map(Some)
 }

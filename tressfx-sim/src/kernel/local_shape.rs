@@ -1,23 +1,18 @@
 //! `hair.sim.local_shape`: edges want the angles of the rest pose.
 
 use tressfx_core::Result;
-use tressfx_core::backend::Backend;
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{ShaderSource, Specialization};
 
-use super::{LIBRARY, Pass, counts};
-use crate::buffers::SectionBuffers;
-use crate::params::SimParams;
+use super::{LIBRARY, Pass, PassMaker};
 
-const SOURCE: ShaderSource = ShaderSource {
+pub(crate) const SOURCE: ShaderSource = ShaderSource {
     label: "hair.sim.local_shape",
     root: ("local_shape", include_str!("../../shaders/local_shape.wgsl")),
     library: LIBRARY,
 };
 
-pub(crate) fn local_shape(backend: &mut dyn Backend, buffers: &SectionBuffers, params: &SimParams) -> Result<Pass> {
-    let shape = &buffers.strands.shape;
-    let specialization = counts(shape).constant("ITERATIONS", params.local_iterations);
-    let resources =
-        [("step", buffers.step.into()), ("rest", buffers.rest.into()), ("positions", buffers.strands.positions.into())];
-    Pass::new(backend, &SOURCE, &specialization, &resources, shape.guides)
+pub(crate) fn local_shape(maker: &mut PassMaker) -> Result<Pass> {
+    let buffers = maker.buffers;
+    let resources = [("rest", buffers.rest.into()), ("positions", buffers.strands.positions.into())];
+    maker.pass_with_roots(&SOURCE, Specialization::new(), &resources, maker.guides())
 }

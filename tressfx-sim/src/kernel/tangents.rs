@@ -1,21 +1,18 @@
 //! `hair.sim.tangents`: unit tangents of all strands.
 
 use tressfx_core::Result;
-use tressfx_core::backend::Backend;
-use tressfx_core::shader::ShaderSource;
+use tressfx_core::shader::{ShaderSource, Specialization};
 
-use super::{LIBRARY, Pass, counts};
-use crate::buffers::SectionBuffers;
+use super::{LIBRARY, Pass, PassMaker};
 
-const SOURCE: ShaderSource = ShaderSource {
+pub(crate) const SOURCE: ShaderSource = ShaderSource {
     label: "hair.sim.tangents",
     root: ("tangents", include_str!("../../shaders/tangents.wgsl")),
     library: LIBRARY,
 };
 
-pub(crate) fn tangents(backend: &mut dyn Backend, buffers: &SectionBuffers) -> Result<Pass> {
-    let shape = &buffers.strands.shape;
-    let resources =
-        [("positions", buffers.strands.positions.into()), ("strand_tangents", buffers.strands.tangents.into())];
-    Pass::new(backend, &SOURCE, &counts(shape), &resources, shape.strand_vertices())
+pub(crate) fn tangents(maker: &mut PassMaker) -> Result<Pass> {
+    let buffers = &maker.buffers.strands;
+    let resources = [("positions", buffers.positions.into()), ("strand_tangents", buffers.tangents.into())];
+    maker.pass(&SOURCE, &Specialization::new(), &resources, maker.strand_vertices())
 }

@@ -1,10 +1,12 @@
 //! `hair.sim.collide` in f64.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use tressfx_core::shape::Capsule;
 
 use super::Guide;
-use super::vector::{across, direction_or, rotate_back};
+use super::roots::RootMotion;
+use super::vector::{DOWN, across, direction_or, rotate_back};
+use crate::collider::CapsuleMotion;
 use crate::step::Step;
 
 const ROUNDS: u32 = 5;
@@ -16,7 +18,8 @@ const LEAST_SINE: f64 = 1.0 / GROWTH;
 const TILT: f64 = 1e-7;
 
 /// Turns vertices that are inside a capsule out about their parents, and lets what hangs on them follow.
-pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
+pub fn collide(step: &Step, guide: &mut Guide, capsules: &[(Capsule, CapsuleMotion)]) {
+    let root = guide.root(step);
     let mut moved = false;
     let mut old_parent = guide.positions[0];
     for i in 1..guide.vertices() {
@@ -29,13 +32,13 @@ pub fn collide(step: &Step, guide: &mut Guide, capsules: &[Capsule]) {
         let parent = guide.positions[i - 1];
         let length = f64::from(guide.rest_lengths[i - 1]);
         if moved {
-            guide.positions[i] = parent + length * direction_or(guide.positions[i] - parent, DVec3::NEG_Y);
+            guide.positions[i] = parent + length * direction_or(guide.positions[i] - parent, DOWN);
         }
         let start = step.in_head(guide.positions[i]);
-        let way = start - step.in_head(step.carry(guide.previous[i]));
+        let way = start - step.in_head(guide.previous[i]);
         let vertex = Vertex { parent: step.in_head(parent), start, length, edge, way };
-        if let Some((point, kept)) = resolved(capsules, &vertex, f64::from(step.friction)) {
-            guide.previous[i] = step.carry_back(step.in_world(point - kept));
+        if let Some((point, kept)) = resolved(step, &root, capsules, &vertex) {
+            guide.previous[i] = step.in_world(point - kept);
             guide.positions[i] = step.in_world(point);
             moved = true;
         }
@@ -50,31 +53,38 @@ struct Vertex {
     length: f64,
     /// The way that the edge had before anything moved.
     edge: DVec3,
-    /// What it has made in the sub-step.
+    /// What it has made since its past.
     way: DVec3,
 }
 
 /// Where a vertex is when it has left all capsules, and what they have left of its way; `None` if it was outside.
-fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVec3, DVec3)> {
+fn resolved(
+    step: &Step,
+    root: &RootMotion,
+    capsules: &[(Capsule, CapsuleMotion)],
+    vertex: &Vertex,
+) -> Option<(DVec3, DVec3)> {
     let (mut point, mut kept, mut left) = (vertex.start, vertex.way, 1.0);
-    let mut heading = direction_or(vertex.edge, DVec3::NEG_Y);
+    let mut heading = direction_or(vertex.edge, DOWN);
     let mut touched = false;
     for _ in 0..ROUNDS {
         let mut gone = 0.0;
-        for capsule in capsules {
+        for (capsule, motion) in capsules {
             let (center, radius) = nearest(capsule, point);
             if point.distance_squared(center) < INSIDE * radius * radius {
-                let before = direction_or(point - vertex.parent, DVec3::NEG_Y);
+                let before = direction_or(point - vertex.parent, DOWN);
                 let apart = vertex.length * before.distance(heading);
                 let weight = (GROWTH * (radius - point.distance(center)) / apart.max(1e-12)).min(1.0);
                 let aim = before.lerp(heading, weight);
                 let (turned, share) = turned_out(vertex.parent, aim, vertex.length, center, radius, left);
                 let pushed = turned - point;
                 let normal = direction_or(turned - center, DVec3::ZERO);
-                kept = slid(kept + pushed, normal, pushed.dot(normal).max(0.0), friction);
+                let surface = surface_displacement(step, root, motion, point);
+                let depth = pushed.dot(normal).max(0.0);
+                kept = surface + slid(kept + pushed - surface, normal, depth, f64::from(step.friction));
                 point = turned;
                 left *= 1.0 - share;
-                heading = heading.lerp(direction_or(point - vertex.parent, DVec3::NEG_Y), weight);
+                heading = heading.lerp(direction_or(point - vertex.parent, DOWN), weight);
                 touched = true;
                 gone += pushed.length();
             }
@@ -85,6 +95,16 @@ fn resolved(capsules: &[Capsule], vertex: &Vertex, friction: f64) -> Option<(DVe
         left *= NEXT_ROUND;
     }
     touched.then_some((point, kept))
+}
+
+/// The displacement of a capsule's surface at a point, without the share of the root's motion that the velocity shock has added
+/// to the point's past.
+fn surface_displacement(step: &Step, root: &RootMotion, motion: &CapsuleMotion, point: DVec3) -> DVec3 {
+    let here = step.in_world(point);
+    let own = point - rotate_back(DVec4::from(motion.turn.as_dquat()), point - motion.shift.as_dvec3());
+    let with_head = here - step.carried_from(here);
+    let with_root = here - root.carried_from(here) + step.shift.as_dvec3();
+    own + step.in_head(with_head - f64::from(step.shock) * with_root)
 }
 
 fn nearest(capsule: &Capsule, point: DVec3) -> (DVec3, f64) {

@@ -4,7 +4,7 @@ use super::Guide;
 use super::vector::{NO_LENGTH, position, rotate, turned};
 use crate::step::Step;
 
-/// Each edge is pulled towards the angle to the edge before it that it has in the rest pose; the first one to the head's.
+/// Each edge is pulled towards the angle to the edge before it that it has in the rest pose; the first one to its root's.
 pub fn local_shape(step: &Step, guide: &mut Guide, iterations: u32) {
     for _ in 0..iterations {
         walk(step, guide);
@@ -12,7 +12,7 @@ pub fn local_shape(step: &Step, guide: &mut Guide, iterations: u32) {
 }
 
 fn walk(step: &Step, guide: &mut Guide) {
-    let mut frame = step.head_rotation.as_dvec4();
+    let mut frame = guide.root(step).rotation;
     for i in 0..guide.vertices() - 1 {
         let goal = rotate(frame, position(guide.rest[i + 1]) - position(guide.rest[i]));
         let (here, next) = (guide.inverse_mass(i), guide.inverse_mass(i + 1));

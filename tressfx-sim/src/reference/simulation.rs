@@ -3,19 +3,25 @@
 use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Bounds, Strands, about};
+use tressfx_core::view::Pose;
 
-use super::{Guide, collide, follow, integrate, length, local_shape, velocity_shock};
-use crate::clock::{Clock, ClockParams, StepInput};
+use super::{
+    Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots, velocity_shock,
+    wind,
+};
+use crate::buffers::RootTransform;
+use crate::clock::{Clock, ClockParams, SubStep};
+use crate::collider::CapsuleMotion;
 use crate::error::SimError;
+use crate::input::StepInput;
 use crate::params::SimParams;
 use crate::sim::{SectionDesc, StepReport};
-use crate::step::{Step, Units};
+use crate::step::{SectionInfo, Step};
 
 /// What [`HairSim`](crate::HairSim) does, in f64 on the CPU.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     sections: Vec<Section<'a>>,
-    capsules: Vec<Capsule>,
     clock: Clock,
     non_finite: u64,
 }
@@ -26,10 +32,13 @@ struct Section<'a> {
     /// About the centre of the groom.
     rest: Vec<Vec4>,
     params: SimParams,
-    units: Units,
+    info: SectionInfo,
     step: Step,
     positions: Vec<DVec3>,
     previous: Vec<DVec3>,
+    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where roots ride
+    /// on the head.
+    roots: Vec<(RootPlace, RootPlace, GuideRoot)>,
 }
 
 impl<'a> Simulation<'a> {
@@ -37,16 +46,14 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// A parameter outside its range.
-    pub fn new(sections: &[SectionDesc<'a>], capsules: &[Capsule]) -> Result<Self, SimError> {
+    pub fn new(sections: &[SectionDesc<'a>]) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
         let bounds =
             sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
         let clock = Clock::new(ClockParams::default(), bounds)?;
         let center = clock.center();
-        let about = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
         Ok(Self {
             sections: sections.iter().map(|section| Section::new(section, center)).collect(),
-            capsules: capsules.iter().map(about).collect(),
             clock,
             non_finite: 0,
         })
@@ -66,23 +73,40 @@ impl<'a> Simulation<'a> {
     /// Something in the input that is not finite or out of range.
     pub fn step(&mut self, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
-        let frame = self.clock.advance(input.dt, input.head);
-        for section in &mut self.sections {
-            if let Some(rotation) = frame.reset {
-                section.step = Step::reset(&section.params, &section.units, rotation);
+        let plan = self.clock.advance(input.dt, input.head);
+        let center = self.clock.center();
+        for (index, section) in self.sections.iter_mut().enumerate() {
+            if let Some(rotation) = plan.reset {
+                section.step = Step::reset(&section.params, &section.info, rotation);
+                section.move_roots();
                 section.each_guide(|step, _, _, guide| integrate(step, guide));
             }
-            for sub_step in &frame.sub_steps {
-                section.step = Step::new(&section.params, &section.units, sub_step, input.wind.as_ref());
-                self.non_finite += section.sub_step(&self.capsules);
+            for sub_step in &plan.sub_steps {
+                section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
+                let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
+                let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
+                self.non_finite += section.sub_step(&capsules, sub_step, input.wind.is_some());
             }
         }
         Ok(StepReport {
-            sub_steps: frame.sub_steps.len() as u32,
-            reset: frame.reset.is_some(),
-            teleported: frame.teleported,
-            dropped: frame.dropped,
+            sub_steps: plan.sub_steps.len() as u32,
+            reset: plan.reset.is_some(),
+            teleported: plan.teleported,
+            dropped: plan.dropped,
         })
+    }
+
+    /// What [`HairSim::set_roots`](crate::HairSim::set_roots) does.
+    ///
+    /// # Panics
+    /// If there is no such section, or it has another number of roots.
+    pub fn set_roots(&mut self, section: usize, poses: &[Pose]) {
+        let center = self.clock.center();
+        let roots = &mut self.sections[section].roots;
+        assert_eq!(roots.len(), poses.len(), "roots of section {section}");
+        for ((target, ..), pose) in roots.iter_mut().zip(poses) {
+            *target = RootTransform::new(center, pose).into();
+        }
     }
 
     /// Positions of all strands of a section about the centre of the groom, strand-major.
@@ -93,8 +117,9 @@ impl<'a> Simulation<'a> {
         let section = &self.sections[section];
         let (guides, vertices) = (section.strands.guides as usize, section.strands.vertices as usize);
         let follows = section.strands.follow_offsets.iter().enumerate().flat_map(|(index, &offset)| {
-            let start = index % guides * vertices;
-            follow(&section.step, &section.positions[start..start + vertices], offset)
+            let (guide, start) = (index % guides, index % guides * vertices);
+            let root = section.roots.get(guide).map(|(.., root)| root);
+            follow(&section.step, &section.positions[start..start + vertices], offset, root)
         });
         section.positions.iter().copied().chain(follows).collect()
     }
@@ -108,28 +133,46 @@ impl<'a> Simulation<'a> {
 impl<'a> Section<'a> {
     fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
-        let units = Units { metres_per_unit: strands.metres_per_unit, tip_separation: strands.tip_separation };
+        let info = SectionInfo::of(strands);
+        let still = (RootPlace::WITH_HEAD, RootPlace::WITH_HEAD);
+        let root = GuideRoot { now: still.0, last: still.1 };
+        let roots = if desc.own_roots { strands.guides as usize } else { 0 };
         Self {
             strands,
             rest: about(center, &strands.rest),
             params: desc.params.clone(),
-            units,
-            step: Step::reset(&desc.params, &units, Quat::IDENTITY),
+            info,
+            step: Step::reset(&desc.params, &info, Quat::IDENTITY),
             positions: vec![DVec3::ZERO; strands.rest.len()],
             previous: vec![DVec3::ZERO; strands.rest.len()],
+            roots: vec![(still.0, still.1, root); roots],
+        }
+    }
+
+    fn move_roots(&mut self) {
+        for (target, reached, root) in &mut self.roots {
+            roots(&self.step, target, reached, root);
         }
     }
 
     /// One sub-step; says how many strands had become non-finite.
-    fn sub_step(&mut self, capsules: &[Capsule]) -> u64 {
+    fn sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], sub_step: &SubStep, in_wind: bool) -> u64 {
         let mut non_finite = 0;
+        self.move_roots();
+        let moves = !sub_step.is_still() || !self.roots.is_empty();
         self.each_guide(|step, params, index, guide| {
+            if moves {
+                velocity_shock(step, guide);
+            }
             integrate(step, guide);
-            velocity_shock(step, guide);
             if params.has_local_shape(guide.vertices() as u32) {
                 local_shape(step, guide, params.local_iterations);
             }
-            non_finite += u64::from(length(step, guide, index, params.length_iterations));
+            if in_wind {
+                wind(step, guide, index);
+            }
+            lengths(step, guide, params.length_iterations);
+            non_finite += u64::from(recovery(step, guide));
             collide(step, guide, capsules);
         });
         non_finite
@@ -140,7 +183,8 @@ impl<'a> Section<'a> {
         let rest = self.rest.chunks(vertices).zip(self.strands.rest_lengths.chunks(vertices));
         let moving = self.positions.chunks_mut(vertices).zip(self.previous.chunks_mut(vertices));
         for (index, ((rest, rest_lengths), (positions, previous))) in rest.zip(moving).enumerate() {
-            let mut guide = Guide { rest, rest_lengths, positions, previous };
+            let own_root = self.roots.get(index).map(|(.., root)| *root);
+            let mut guide = Guide { rest, rest_lengths, positions, previous, own_root };
             visit(&self.step, &self.params, index as u32, &mut guide);
         }
     }

@@ -6,6 +6,8 @@ use crate::step::Step;
 
 /// Below this squared length a vector has no direction.
 pub(super) const NO_LENGTH: f64 = 1e-24;
+/// The direction of an edge that has none.
+pub(super) const DOWN: DVec3 = DVec3::NEG_Y;
 
 /// Applies a rotation as the kernels do, without assuming that the quaternion has a length of exactly 1.
 pub(super) fn rotate(rotation: DVec4, v: DVec3) -> DVec3 {
@@ -46,13 +48,8 @@ impl Step {
         rotate_back(self.head_rotation.as_dvec4(), point)
     }
 
-    /// A point as the head's motion during the sub-step moves it.
-    pub(super) fn carry(&self, point: DVec3) -> DVec3 {
-        rotate(self.turn.as_dvec4(), point + self.shift.as_dvec3())
-    }
-
-    /// The point that [`Step::carry`] takes to this one.
-    pub(super) fn carry_back(&self, point: DVec3) -> DVec3 {
+    /// Where the head's motion during the sub-step took a point from.
+    pub(super) fn carried_from(&self, point: DVec3) -> DVec3 {
         rotate_back(self.turn.as_dvec4(), point) - self.shift.as_dvec3()
     }
 }

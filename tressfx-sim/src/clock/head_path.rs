@@ -1,15 +1,15 @@
-//! The way of the head within a frame, of which only the ends are known.
+//! The path of the head within a frame, of which only the ends are known.
 
 use glam::{DQuat, DVec3};
 use tressfx_core::view::Pose;
 
-/// The way from one head pose to the next: the cubic through both and the two before, or the parabola or straight line through
+/// The path from one head pose to the next: the cubic through both and the two before, or the parabola or straight line through
 /// as many as are known.
 ///
 /// A straight line would miss an eighth of the acceleration times the square of the frame, and jerk at every frame. A head that
 /// stops at once overshoots by three sixteenths of its last way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Path {
+pub(crate) struct HeadPath {
     from: Pose,
     to: Pose,
     translation: Cubic,
@@ -37,7 +37,7 @@ pub(crate) struct Before {
     pub(crate) length: f64,
 }
 
-impl Path {
+impl HeadPath {
     /// The way from `from` to `to`, after the last frame and the one before it.
     pub(crate) fn new(before: [Option<Before>; 2], from: Pose, to: Pose) -> Self {
         let cubic = |of: &dyn Fn(&Pose) -> DVec3| {
@@ -102,7 +102,7 @@ mod tests {
     }
 
     /// How far a path is from the true motion within a frame, in radians and units.
-    fn errors(path: &Path, truth: impl Fn(f64) -> Pose) -> (f32, f32) {
+    fn errors(path: &HeadPath, truth: impl Fn(f64) -> Pose) -> (f32, f32) {
         let at = |i: u32| {
             let (is, should_be) = (path.at(f64::from(i) / 16.0), truth(f64::from(i) / 16.0));
             (is.rotation.angle_between(should_be.rotation), is.translation.distance(should_be.translation))
@@ -117,7 +117,7 @@ mod tests {
             for more in [None, Some(0.5), Some(1.0), Some(2.0)] {
                 let before = Before { head: truth(-length), length };
                 let earlier = more.map(|more| Before { head: truth(-length - more), length: more });
-                let path = Path::new([Some(before), earlier], truth(0.0), truth(1.0));
+                let path = HeadPath::new([Some(before), earlier], truth(0.0), truth(1.0));
                 let (angle, distance) = errors(&path, truth);
                 assert!(angle < 2e-3 && distance < 1e-6, "{angle} {distance}");
                 assert_eq!(path.at(1.0), truth(1.0));
@@ -132,7 +132,7 @@ mod tests {
             let frame = |start: f64| {
                 let at = |frame: usize| Before { head: truth(start - frame as f64), length: 1.0 };
                 let before = [1, 2].map(|frame| Some(at(frame)).filter(|_| frame <= known));
-                let path = Path::new(before, truth(start), truth(start + 1.0));
+                let path = HeadPath::new(before, truth(start), truth(start + 1.0));
                 errors(&path, |t| truth(start + t)).1
             };
             (0..10).map(f64::from).map(|start| frame(start + 0.5)).fold(0.0, f32::max)
@@ -144,12 +144,12 @@ mod tests {
     #[test]
     fn rest_is_rest_and_a_stop_or_a_start_goes_little_astray() {
         let before = |shifts: [f64; 2]| shifts.map(|shift| Some(Before { head: pose(0.0, shift), length: 1.0 }));
-        let rest = Path::new(before([-1.0, -2.0]), pose(0.0, 0.0), pose(0.0, 0.0));
+        let rest = HeadPath::new(before([-1.0, -2.0]), pose(0.0, 0.0), pose(0.0, 0.0));
         assert_eq!(rest.at(0.3), pose(0.0, 0.0));
         let almost = pose(0.0, 1e-6);
-        let (_, overshoot) = errors(&Path::new(before([-1.0, -2.0]), pose(0.0, 0.0), almost), |_| almost);
+        let (_, overshoot) = errors(&HeadPath::new(before([-1.0, -2.0]), pose(0.0, 0.0), almost), |_| almost);
         assert!((0.18..0.1926).contains(&overshoot), "{overshoot}");
-        let start = Path::new(before([0.0, 0.0]), pose(0.0, 0.0), pose(0.0, 1.0));
+        let start = HeadPath::new(before([0.0, 0.0]), pose(0.0, 0.0), pose(0.0, 1.0));
         let heights: Vec<f32> = (0..=16).map(|i| start.at(f64::from(i) / 16.0).translation.y).collect();
         assert!(heights.is_sorted() && heights[0] == 0.0 && heights[16] == 1.0, "{heights:?}");
     }
@@ -158,7 +158,7 @@ mod tests {
     fn quaternions_of_either_sign_are_the_same_rotation() {
         let (from, to) = (pose(0.0, 0.0), pose(0.4, 0.0));
         let negative = Pose { rotation: -to.rotation, ..to };
-        let (angle, _) = errors(&Path::new([None; 2], from, negative), |t| pose(0.4 * t, 0.0));
+        let (angle, _) = errors(&HeadPath::new([None; 2], from, negative), |t| pose(0.4 * t, 0.0));
         assert!(angle < 2e-3, "{angle}");
     }
 }

@@ -1,0 +1,143 @@
+// Length constraints. One thread a guide.
+//
+// All happens in one walk. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is the same as one
+// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent (dynamic
+// follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
+
+import package::constants::{CHUNK, SWEEPS};
+import package::grid::{GROUP, thread_index};
+import package::step::step;
+import package::vector::{DOWN, NO_LENGTH, direction_or};
+
+@group(0) @binding(1) var<storage, read> rest_lengths: array<f32>;
+@group(0) @binding(2) var<storage, read_write> previous: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
+
+// `CHUNK` vertices are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
+// the stores of the vertices before it.
+
+/// Share of a vertex's placement that its parent's velocity answers for. The parent does not move when its child is placed;
+/// with no reaction at all strands gain energy without end, and at 1 it is never lost.
+const REACTION: f32 = 0.9;
+
+/// The vertices that the sweeps are at, about the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest length from
+/// its parent.
+struct Window { vertices: array<vec4<f32>, SWEEPS + 1u>, lengths: array<f32, SWEEPS + 1u> }
+
+/// The last vertex that was placed, about the root; where it was before the sub-step, about the centre of the groom; the ways that it and the one before it have made, and the
+/// direction of its edge.
+struct Placing { parent: vec4<f32>, past: vec3<f32>, way: vec3<f32>, way_before: vec3<f32>, direction: vec3<f32> }
+
+@compute @workgroup_size(GROUP)
+fn lengths(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+           @builtin(local_invocation_index) lane: u32) {
+    let strand = thread_index(group, groups, lane);
+    if (strand >= step.guides) { return; }
+
+    // Inside of the walk positions are about the root, so that roundings are those of so small a thing as a strand: where a
+    // vertex has come close to its parent, they grow by what the edge is short.
+    var root = vec3(0.0);
+    var window: Window;
+    var placing = Placing(vec4(0.0), vec3(0.0), vec3(0.0), vec3(0.0), DOWN);
+    let vertices = step.vertices;
+    for (var start = 0u; start < vertices + SWEEPS; start += CHUNK) {
+        var here: array<vec4<f32>, CHUNK>;
+        var from_parent: array<f32, CHUNK>;
+        var past: array<vec3<f32>, CHUNK>;
+        for (var i = 0u; i < CHUNK; i++) {
+            here[i] = positions[min(start + i, vertices - 1u) * step.strands + strand];
+            from_parent[i] = rest_lengths[(clamp(start + i, 1u, vertices - 1u) - 1u) * step.guides + strand];
+            past[i] = previous[(clamp(start + i, SWEEPS, vertices + SWEEPS - 1u) - SWEEPS) * step.guides + strand].xyz;
+        }
+        if (start == 0u) { root = here[0].xyz; }
+        for (var i = 0u; i < CHUNK; i++) {
+            let t = start + i;
+            sweep(&window, vec4(here[i].xyz - root, here[i].w), from_parent[i], t);
+            if (t >= SWEEPS && t < vertices + SWEEPS) {
+                let placed = t - SWEEPS;
+                let parent_is_free = placed > 0u && placing.parent.w > 0.0;
+                let parent_past = place(&placing, window.vertices[SWEEPS], window.lengths[SWEEPS], past[i], root, placed == 0u);
+                if (parent_is_free) { previous[(placed - 1u) * step.guides + strand] = vec4(parent_past, 0.0); }
+                positions[placed * step.strands + strand] = vec4(root + placing.parent.xyz, placing.parent.w);
+            }
+        }
+    }
+    @if(pinned_tips) reach(strand);
+}
+
+/// Moves the window on to vertex `t`, at `vertex`, `length` from its parent: one edge of each sweep.
+fn sweep(window: ptr<function, Window>, vertex: vec4<f32>, length: f32, t: u32) {
+    for (var k = SWEEPS; k > 0u; k--) {
+        (*window).vertices[k] = (*window).vertices[k - 1u];
+        (*window).lengths[k] = (*window).lengths[k - 1u];
+    }
+    (*window).vertices[0] = vertex;
+    (*window).lengths[0] = length;
+    for (var k = 0u; k < SWEEPS; k++) {
+        if (t > k && t < step.vertices + k) {
+            let parent = (*window).vertices[k + 1u];
+            let child = (*window).vertices[k];
+            let correction = stretch(parent, child, (*window).lengths[k]);
+            (*window).vertices[k + 1u] = parent + vec4(parent.w * correction, 0.0);
+            (*window).vertices[k] = child - vec4(child.w * correction, 0.0);
+        }
+    }
+}
+
+/// Places the next vertex, which the sweeps have left at `swept` and which was at `past` before the sub-step, `length` from its
+/// parent. Gives the parent's past as it is now: the parent's velocity answers for the placing, and its way is drawn to the mean
+/// of its neighbours'. Nothing else ends the zigzag from vertex to vertex in which strands that gravity compresses would tremble
+/// for ever. What a strand's longest bend loses by it is a hundredth in a sub-step, or less.
+fn place(placing: ptr<function, Placing>, swept: vec4<f32>, length: f32, past: vec3<f32>, root: vec3<f32>,
+         is_root: bool) -> vec3<f32> {
+    let last = *placing;
+    var vertex = swept;
+    if (!is_root) {
+        (*placing).direction = direction_or(swept.xyz - last.parent.xyz, last.direction);
+        let goal = last.parent.xyz + length * (*placing).direction;
+        vertex = vec4(select(swept.xyz, goal, swept.w > 0.0), swept.w);
+    }
+    let way = vertex.xyz - (past - root);
+    let zigzag = last.way_before - last.way + select(vec3(0.0), way - last.way, vertex.w > 0.0);
+    // A pinned vertex has no way of its own: its child has one neighbour.
+    (*placing).way_before = select(way, last.way, last.parent.w > 0.0);
+    (*placing).way = way;
+    (*placing).past = past;
+    (*placing).parent = vertex;
+    return last.past + (REACTION * (vertex.xyz - swept.xyz) - step.smoothing * zigzag);
+}
+
+/// What moves the ends of an edge to its rest length, for an inverse mass of 1. Without branches, and with nothing on the way
+/// from positions to result that the masses alone decide: the walk waits for this.
+fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
+    let mass = a.w + b.w;
+    let share = select(0.0, 1.0 / mass, mass > 0.0);
+    let edge = b.xyz - a.xyz;
+    let squared = dot(edge, edge);
+    let stretched = share - share * length * inverseSqrt(max(squared, NO_LENGTH));
+    return edge * select(0.0, stretched, squared > NO_LENGTH);
+}
+
+/// Where the tip is pinned too, lengths are handed back and forth between both ends (FABRIK: Aristidou, Lasenby 2011).
+@if(pinned_tips)
+fn reach(strand: u32) {
+    if (positions[(step.vertices - 1u) * step.strands + strand].w > 0.0) { return; }
+    for (var round = 0u; round < 4u; round++) {
+        pull(strand, i32(step.vertices) - 1, -1);
+        pull(strand, 0, 1);
+    }
+}
+
+/// Places every movable vertex at its rest length from the vertex before it, from one end of the strand to the other.
+@if(pinned_tips)
+fn pull(strand: u32, end: i32, forward: i32) {
+    var parent = positions[u32(end) * step.strands + strand].xyz;
+    var direction = DOWN;
+    for (var i = end + forward; i >= 0 && i < i32(step.vertices); i += forward) {
+        let vertex = positions[u32(i) * step.strands + strand];
+        let length = rest_lengths[u32(min(i, i - forward)) * step.guides + strand];
+        direction = direction_or(vertex.xyz - parent, direction);
+        parent = select(vertex.xyz, parent + length * direction, vertex.w > 0.0);
+        positions[u32(i) * step.strands + strand] = vec4(parent, vertex.w);
+    }
+}

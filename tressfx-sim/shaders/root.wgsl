@@ -1,0 +1,56 @@
+// How the root of a guide moves: with the head, or, with the feature `roots`, by a transform of its own.
+
+import package::step::step;
+import package::vector::{after, rotate, rotate_back};
+
+/// Where a guide's root takes its rest pose: a point of the rest pose, about the centre of the groom, is turned and then moved
+/// to a place about the centre on the axes of the world. At the end of the sub-step, and one sub-step ago about the centre of
+/// then.
+@if(roots)
+struct GuideRoot { rotation: vec4<f32>, place: vec4<f32>, last_rotation: vec4<f32>, last_place: vec4<f32> }
+
+/// One a guide.
+@if(roots)
+@group(0) @binding(9) var<storage, read> roots: array<GuideRoot>;
+
+/// The motion of a root during the sub-step.
+struct Root {
+    /// From the axes of the rest pose to those of the world, at the end of the sub-step.
+    rotation: vec4<f32>,
+    /// The rotation during the sub-step.
+    turn: vec4<f32>,
+    /// Where the centre of the rest pose is taken, at the end of the sub-step.
+    @if(roots) place: vec3<f32>,
+    /// The same one sub-step ago, about the centre of then.
+    @if(roots) last_place: vec3<f32>,
+}
+
+@if(!roots)
+fn root_of(guide: u32) -> Root {
+    return Root(step.head_rotation, step.turn);
+}
+
+@if(roots)
+fn root_of(guide: u32) -> Root {
+    let root = roots[guide];
+    let last = root.last_rotation;
+    return Root(root.rotation, after(root.rotation, vec4(-last.xyz, last.w)), root.place.xyz, root.last_place.xyz);
+}
+
+/// Where the root takes a point of the rest pose.
+fn shape_of(root: Root, rest: vec3<f32>) -> vec3<f32> {
+    @if(!roots) { return rotate(root.rotation, rest); }
+    @if(roots) { return rotate(root.rotation, rest) + root.place; }
+}
+
+/// Where the root's motion takes a point; `last` is its place one sub-step ago, about the centre of then.
+fn carried(root: Root, last: vec3<f32>) -> vec3<f32> {
+    @if(!roots) { return rotate(root.turn, last); }
+    @if(roots) { return rotate(root.turn, last - root.last_place) + root.place; }
+}
+
+/// Where a point was one sub-step ago that the root's motion has taken here; about the centre of then.
+fn carried_from(root: Root, here: vec3<f32>) -> vec3<f32> {
+    @if(!roots) { return rotate_back(root.turn, here); }
+    @if(roots) { return rotate_back(root.turn, here - root.place) + root.last_place; }
+}

@@ -1,0 +1,40 @@
+//! How time is cut.
+
+use serde::{Deserialize, Serialize};
+
+use crate::params::{ParamError, within};
+
+/// How time is cut, and what counts as a teleport. The same for all sections.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClockParams {
+    /// Length of a sub-step, s. At 1/120 the local shape constraints are stiff and hair still comes to rest. They push the two
+    /// vertices of an edge and not the edge before it, which can add energy; sub-steps that are not too short take it out again.
+    /// Curls of medium stiffness tremble at 1/240.
+    pub sub_step: f64,
+    /// The most time that one frame simulates, s; the rest is dropped, and reported.
+    pub max_frame: f64,
+    /// A head that moves further than this in one frame has teleported; in radii of the groom.
+    pub teleport_distance: f32,
+    /// A head that turns further than this in one frame has teleported; radians, pi or more: never.
+    pub teleport_angle: f32,
+}
+
+impl Default for ClockParams {
+    fn default() -> Self {
+        Self { sub_step: 1.0 / 120.0, max_frame: 0.1, teleport_distance: 10.0, teleport_angle: 2.0 }
+    }
+}
+
+impl ClockParams {
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// The first parameter outside its range, with its value and the range.
+    pub fn validate(&self) -> Result<(), ParamError> {
+        within("sub_step", self.sub_step, 1e-5..=0.1)?;
+        within("max_frame", self.max_frame, self.sub_step..=10.0)?;
+        within("teleport_distance", self.teleport_distance, 0.0..=f32::MAX)?;
+        within("teleport_angle", self.teleport_angle, 0.0..=f32::MAX)
+    }
+}

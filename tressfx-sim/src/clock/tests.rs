@@ -1,0 +1,157 @@
+//! Tests of the clock.
+
+use proptest::prelude::*;
+
+use super::*;
+
+fn clock() -> Clock {
+    let bounds = Bounds { min: Vec3::splat(-0.1), max: Vec3::splat(0.1) };
+    let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
+    let frame = clock.advance(0.0, Pose::IDENTITY);
+    assert_eq!((frame.reset, frame.sub_steps.len()), (Some(Quat::IDENTITY), 0));
+    clock
+}
+
+fn moved(x: f32) -> Pose {
+    Pose { translation: Vec3::X * x, ..Pose::IDENTITY }
+}
+
+#[test]
+fn two_seconds_are_as_many_sub_steps_at_any_frame_rate() {
+    for fps in [24, 30, 60, 72, 90, 120, 144, 240, 1000] {
+        let mut clock = clock();
+        let frames = (0..2 * fps).map(|_| clock.advance(1.0 / f64::from(fps), Pose::IDENTITY));
+        assert_eq!(frames.map(|frame| frame.sub_steps.len()).sum::<usize>(), 240, "{fps} fps");
+        assert!((clock.time() - 2.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_head_moves_evenly_in_the_first_frame_and_arrives() {
+    let mut clock = clock();
+    let frame = clock.advance(1.0 / 60.0, moved(0.2));
+    let shifts: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.shift.x).collect();
+    assert!(shifts.iter().all(|shift| (shift - 0.1).abs() < 1e-6), "{shifts:?}");
+    assert_eq!(clock.pose(), moved(0.2), "the end of the frame is met exactly");
+    // Half of a sub-step: the strands stay, and the renderer is told where they are to be.
+    let frame = clock.advance(1.0 / 240.0, moved(0.25));
+    assert!(frame.sub_steps.is_empty());
+    assert_eq!(clock.pose(), moved(0.25));
+    let frame = clock.advance(1.0 / 240.0, moved(0.35));
+    assert!((frame.sub_steps[0].shift.x - 0.15).abs() < 1e-6);
+}
+
+#[test]
+fn strands_turn_and_move_with_the_head_about_their_centre() {
+    let bounds = Bounds { min: Vec3::new(-0.1, 1.5, -0.1), max: Vec3::new(0.1, 1.7, 0.1) };
+    let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
+    assert!(clock.center().distance(bounds.center()) < 0.01);
+    let head = |angle: f32| Pose { rotation: Quat::from_rotation_z(angle), translation: Vec3::X * angle };
+    clock.advance(0.0, head(0.0));
+    let point = Vec3::new(0.05, 1.55, -0.02);
+    let mut place = (point - clock.center()).as_dvec3();
+    let mut center = clock.center().as_dvec3();
+    for frame in 1..=30 {
+        let head = head(0.02 * frame as f32);
+        for sub_step in clock.advance(1.0 / 60.0, head).sub_steps {
+            place = sub_step.turn.as_dquat() * place;
+            center += sub_step.shift.as_dvec3();
+        }
+        let carried = head.transform(point);
+        assert!((center + place).as_vec3().distance(carried) < 2e-6, "the head carries it to {carried}");
+        assert!(clock.pose().transform(place.as_vec3()).distance(carried) < 1e-6, "and the renderer draws it there");
+    }
+    // Less than a sub-step later the strands have not turned yet.
+    let head = head(0.605);
+    assert!(clock.advance(1.0 / 240.0, head).sub_steps.is_empty());
+    assert!(clock.pose().transform(place.as_vec3()).distance(head.transform(point)) < 1e-6);
+}
+
+/// Places of a head that is in one now, within the frames that bring it to these places.
+fn places(clock: &mut Clock, dt: f64, ends: &[f32]) -> Vec<f32> {
+    let mut place = clock.pose().translation.x;
+    let mut places = Vec::new();
+    for &end in ends {
+        let frame = clock.advance(dt, moved(end));
+        if frame.reset.is_some() {
+            place = end;
+        }
+        for sub_step in frame.sub_steps {
+            place += sub_step.shift.x;
+            places.push(place);
+        }
+    }
+    places
+}
+
+#[test]
+fn the_head_goes_on_as_it_did_where_the_last_frame_tells_how() {
+    let close = |is: &[f32], should_be: &[f32]| {
+        assert!(is.iter().zip(should_be).all(|(one, other)| (one - other).abs() < 1e-5), "{is:?} {should_be:?}");
+    };
+    let mut one = clock();
+    close(&places(&mut one, 1.0 / 60.0, &[0.0, 0.4]), &[0.0, 0.0, 0.15, 0.4]);
+    one.reset();
+    close(&places(&mut one, 1.0 / 60.0, &[0.5, 0.7]), &[0.5, 0.5, 0.6, 0.7]);
+    // A frame of another length, one that was too long, and a teleport tell nothing.
+    close(&places(&mut one, 1.0 / 24.0, &[0.7]), &[0.7; 5]);
+    close(&places(&mut one, 1.0 / 60.0, &[0.9]), &[0.8, 0.9]);
+    one.advance(10.0, moved(0.0));
+    close(&places(&mut one, 0.1, &[1.2])[..2], &[0.1, 0.2]);
+    assert!(one.advance(1.0 / 60.0, moved(50.0)).teleported);
+    close(&places(&mut one, 1.0 / 60.0, &[50.2]), &[50.1, 50.2]);
+}
+
+#[test]
+fn a_shorter_sub_step_finds_the_head_where_it_was() {
+    let mut clock = clock();
+    clock.advance(1.0 / 60.0 + 1.0 / 125.0, moved(0.1));
+    clock.set_params(ClockParams { sub_step: 1.0 / 1000.0, ..ClockParams::default() }).unwrap();
+    for (dt, x) in [(0.0, 0.2), (1e-12, 0.3)] {
+        let plan = clock.advance(dt, moved(x));
+        let finite =
+            |sub_step: &SubStep| sub_step.shift.is_finite() && sub_step.shares.iter().all(|share| share.is_finite());
+        assert!(plan.sub_steps.iter().all(finite), "{plan:?}");
+        let way: f32 = plan.sub_steps.iter().map(|sub_step| sub_step.shift.x).sum();
+        assert!((-1e-6..0.2).contains(&way), "{way}");
+    }
+}
+
+#[test]
+fn a_head_at_rest_makes_no_motion_at_all() {
+    let mut clock = clock();
+    let head = Pose { rotation: Quat::from_rotation_x(0.3), translation: Vec3::new(0.1, 0.2, 0.3) };
+    clock.advance(0.1, head);
+    let frame = clock.advance(0.1, head);
+    assert!(frame.sub_steps.iter().all(|sub_step| sub_step.turn == Quat::IDENTITY && sub_step.shift == Vec3::ZERO));
+    assert!(frame.sub_steps.iter().all(|sub_step| sub_step.rotation == head.rotation));
+}
+
+#[test]
+fn the_acceleration_is_that_of_the_frames() {
+    let mut clock = clock();
+    let dt = 1.0 / 60.0;
+    let at = |frame: f32| moved(0.5 * 12.0 * (frame / 60.0).powi(2));
+    let accelerations = (1..10).map(|frame| clock.advance(dt, at(frame as f32)).sub_steps[0].acceleration);
+    let accelerations: Vec<f32> = accelerations.collect();
+    assert_eq!(accelerations[0], 0.0, "one frame knows no acceleration");
+    assert!(accelerations[1..].iter().all(|acceleration| (acceleration - 12.0).abs() < 0.1), "{accelerations:?}");
+}
+
+proptest! {
+    #[test]
+    fn time_is_simulated_or_dropped_and_never_lost(steps in prop::collection::vec(-0.1..0.5f64, 1..60)) {
+        let mut clock = clock();
+        let (mut passed, mut dropped, mut sub_steps) = (0.0, 0.0, 0);
+        for dt in steps {
+            let frame = clock.advance(dt, Pose::IDENTITY);
+            prop_assert!(frame.sub_steps.len() <= 12);
+            passed += dt.max(0.0);
+            dropped += frame.dropped;
+            sub_steps += frame.sub_steps.len();
+        }
+        let behind = passed - dropped - sub_steps as f64 / 120.0;
+        prop_assert!((-1e-6..1.0 / 120.0 + 1e-6).contains(&behind), "{} s are neither", behind);
+        prop_assert!((clock.time() - sub_steps as f64 / 120.0).abs() < 1e-9);
+    }
+}

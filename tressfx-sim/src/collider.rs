@@ -1,0 +1,192 @@
+//! What the strands collide with in a frame.
+
+use glam::{DQuat, DVec3, Quat, Vec3};
+use tressfx_core::gpu_struct;
+use tressfx_core::shape::Capsule;
+use tressfx_core::view::Pose;
+
+use crate::clock::SubStep;
+use crate::error::SimError;
+use crate::input::check_pose;
+
+/// A capsule that strands collide with in one frame. It may be another one in the next frame, or none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collider<'a> {
+    /// The capsule, in the unit of the file.
+    pub capsule: Capsule,
+    /// How it moves.
+    pub motion: ColliderMotion,
+    /// Indices of the sections that do not collide with it.
+    pub except: &'a [usize],
+}
+
+/// How a collider moves during a frame. Friction is against this motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColliderMotion {
+    /// With the head: the capsule is in the space of the rest pose.
+    WithHead,
+    /// By itself, evenly from one pose to another: the capsule is in a space of its own, which the poses take to the world.
+    Free {
+        /// At the beginning of the frame.
+        from: Pose,
+        /// At its end.
+        to: Pose,
+    },
+}
+
+impl Collider<'_> {
+    /// A capsule in the space of the rest pose that moves with the head.
+    pub fn with_head(capsule: Capsule) -> Self {
+        Self { capsule, motion: ColliderMotion::WithHead, except: &[] }
+    }
+
+    /// Capsules in the space of the rest pose that move with the head.
+    pub fn all_with_head(capsules: &[Capsule]) -> Vec<Self> {
+        capsules.iter().copied().map(Self::with_head).collect()
+    }
+
+    /// A capsule that moves by itself.
+    pub fn free(capsule: Capsule, from: Pose, to: Pose) -> Self {
+        Self { capsule, motion: ColliderMotion::Free { from, to }, except: &[] }
+    }
+
+    /// Checks it.
+    ///
+    /// # Errors
+    /// A number that is not finite, a negative radius, or a rotation that is none.
+    pub fn validate(&self, index: usize) -> Result<(), SimError> {
+        if !self.capsule.is_sound() {
+            return Err(SimError::UnsoundCapsule { index });
+        }
+        if let ColliderMotion::Free { from, to } = &self.motion {
+            for pose in [from, to] {
+                check_pose(pose, "collider.rotation", "collider.translation")?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The capsule at the end of a sub-step about the centre of the groom, as the head sees it, and its motion during the
+    /// sub-step.
+    pub(crate) fn at(&self, center: Vec3, sub_step: &SubStep) -> (Capsule, CapsuleMotion) {
+        let ColliderMotion::Free { from, to } = &self.motion else {
+            let capsule = Capsule { a: self.capsule.a - center, b: self.capsule.b - center, ..self.capsule };
+            return (capsule, CapsuleMotion::STILL);
+        };
+        let [before, now] = [0, 1].map(|end| {
+            let (rotation, translation) = between(from, to, sub_step.shares[end]);
+            let head = &sub_step.heads[end];
+            let to_head = head.rotation.as_dquat().normalize().inverse();
+            (to_head * rotation, to_head * (translation - head.translation.as_dvec3()) - center.as_dvec3())
+        });
+        let place = |point: Vec3| (now.0 * point.as_dvec3() + now.1).as_vec3();
+        let turn = (now.0 * before.0.inverse()).normalize();
+        let motion = CapsuleMotion { turn: turn.as_quat(), shift: (now.1 - turn * before.1).as_vec3() };
+        (Capsule { a: place(self.capsule.a), b: place(self.capsule.b), ..self.capsule }, motion)
+    }
+}
+
+/// The pose at a share of an even motion; the share may be less than 0.
+fn between(from: &Pose, to: &Pose, share: f64) -> (DQuat, DVec3) {
+    let [start, end] = [from, to].map(|pose| pose.rotation.as_dquat().normalize());
+    let turn = (end * start.inverse()).normalize();
+    let turn = if turn.w < 0.0 { -turn } else { turn };
+    let rotation = DQuat::from_scaled_axis(share * turn.to_scaled_axis()) * start;
+    (rotation, from.translation.as_dvec3().lerp(to.translation.as_dvec3(), share))
+}
+
+/// The motion of a capsule during a sub-step as the head sees it, about the centre of the groom: turned, then shifted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CapsuleMotion {
+    /// The rotation.
+    pub turn: Quat,
+    /// The shift.
+    pub shift: Vec3,
+}
+
+impl CapsuleMotion {
+    /// That of a capsule that moves with the head.
+    pub const STILL: Self = Self { turn: Quat::IDENTITY, shift: Vec3::ZERO };
+}
+
+gpu_struct! {
+    /// A capsule as the kernel reads it: in the space of the rest pose, about the centre of the groom.
+    pub(crate) struct GpuCapsule {
+        /// Centre of one end.
+        pub a: Vec3,
+        /// Radius there.
+        pub radius_a: f32,
+        /// Centre of the other end.
+        pub b: Vec3,
+        /// Radius there.
+        pub radius_b: f32,
+    }
+}
+
+gpu_struct! {
+    /// A [`CapsuleMotion`] as the kernel reads it.
+    pub(crate) struct GpuCapsuleMotion {
+        /// The rotation.
+        pub turn: glam::Vec4,
+        /// The shift.
+        pub shift: Vec3,
+        /// Nothing.
+        pub padding: f32,
+    }
+}
+
+/// The capsules of some sub-steps, as they are uploaded.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CapsuleList {
+    pub(crate) capsules: Vec<GpuCapsule>,
+    pub(crate) motions: Vec<GpuCapsuleMotion>,
+    /// Where the last list of each section is.
+    last: Vec<std::ops::Range<u32>>,
+}
+
+impl FromIterator<(Capsule, CapsuleMotion)> for CapsuleList {
+    fn from_iter<I: IntoIterator<Item = (Capsule, CapsuleMotion)>>(capsules: I) -> Self {
+        let mut list = Self::default();
+        capsules.into_iter().for_each(|(capsule, motion)| list.push(capsule, motion));
+        list
+    }
+}
+
+impl CapsuleList {
+    fn push(&mut self, Capsule { a, b, radius_a, radius_b }: Capsule, CapsuleMotion { turn, shift }: CapsuleMotion) {
+        self.capsules.push(GpuCapsule { a, radius_a, b, radius_b });
+        self.motions.push(GpuCapsuleMotion { turn: turn.into(), shift, padding: 0.0 });
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.capsules.clear();
+        self.motions.clear();
+        self.last.clear();
+    }
+
+    /// Adds what a section collides with in a sub-step, and says where it is. What equals an earlier list is not added again:
+    /// capsules that move with the head are the same in all sub-steps.
+    pub(crate) fn add(&mut self, colliders: &[Collider], section: usize, center: Vec3, sub_step: &SubStep) -> [u32; 2] {
+        let first = self.capsules.len();
+        for collider in colliders.iter().filter(|collider| !collider.except.contains(&section)) {
+            let (capsule, motion) = collider.at(center, sub_step);
+            self.push(capsule, motion);
+        }
+        let (capsules, motions) = (&self.capsules, &self.motions);
+        let equals = |range: &std::ops::Range<u32>| {
+            let range = range.start as usize..range.end as usize;
+            capsules[range.clone()] == capsules[first..] && motions[range] == motions[first..]
+        };
+        let found = self.last.iter().find(|range| equals(range)).cloned();
+        if found.is_some() {
+            self.capsules.truncate(first);
+            self.motions.truncate(first);
+        }
+        let range = found.unwrap_or(first as u32..self.capsules.len() as u32);
+        if self.last.len() <= section {
+            self.last.resize(section + 1, 0..0);
+        }
+        self.last[section] = range.clone();
+        [range.start, range.end]
+    }
+}

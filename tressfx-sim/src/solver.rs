@@ -1,0 +1,64 @@
+//! Which stages make a sub-step.
+
+use crate::clock::SubStep;
+use crate::params::SimParams;
+use crate::stage::Stage;
+
+/// What solves the equations of motion of a section: it chooses the stages of a sub-step and their order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Solver {
+    /// That of TressFX: a position is integrated, and constraints correct it one after the other.
+    #[default]
+    TressFx,
+}
+
+/// What decides whether a stage has an effect in a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conditions {
+    /// Whether nothing moves the roots.
+    pub(crate) still: bool,
+    pub(crate) wind: bool,
+    /// Whether the section has capsules to collide with.
+    pub(crate) capsules: bool,
+}
+
+impl Conditions {
+    pub(crate) fn new(sub_step: &SubStep, own_roots: bool, wind: bool, capsules: bool) -> Self {
+        Self { still: sub_step.is_still() && !own_roots, wind, capsules }
+    }
+}
+
+impl Solver {
+    /// What a reset consists of.
+    pub const RESET: [Stage; 2] = [Stage::Roots, Stage::Integrate];
+    /// What a frame ends with, whatever the solver.
+    pub const FRAME_END: [Stage; 2] = [Stage::Follow, Stage::Tangents];
+
+    /// What a sub-step consists of, in order.
+    pub fn sub_step(self) -> &'static [Stage] {
+        match self {
+            Self::TressFx => &[
+                Stage::Roots,
+                Stage::VelocityShock,
+                Stage::Integrate,
+                Stage::LocalShape,
+                Stage::Wind,
+                Stage::Lengths,
+                Stage::Recovery,
+                Stage::Collide,
+            ],
+        }
+    }
+
+    /// Whether a stage changes anything.
+    pub(crate) fn needs(self, stage: Stage, params: &SimParams, vertices: u32, conditions: Conditions) -> bool {
+        match stage {
+            Stage::VelocityShock => !conditions.still,
+            Stage::LocalShape => params.has_local_shape(vertices),
+            Stage::Wind => conditions.wind && params.wind_drag > 0.0,
+            Stage::Collide => conditions.capsules,
+            _ => true,
+        }
+    }
+}
