@@ -59,7 +59,8 @@ impl<B: Backend> Failing<B> {
             if self.after.take().is_some() {
                 return (made.unwrap_or_else(|error| panic!("nothing was refused: {error}")), after);
             }
-            let error = made.err().unwrap_or_else(|| panic!("creation {after} was refused, and nobody noticed")).to_string();
+            let error =
+                made.err().unwrap_or_else(|| panic!("creation {after} was refused, and nobody noticed")).to_string();
             assert!(error.contains("has no memory left"), "creation {after}: {error}");
             assert_eq!(self.living(), before, "creation {after} was refused: resources, bytes");
         }

@@ -9,7 +9,7 @@
 //! which is one `#[test]` for each case of [`mod@suite`]. For a backend that records into an engine's own encoder there is
 //! [`embed_suite!`] as well: the team says in an [`Embed`](embed::Embed) how its engine begins and submits one.
 
-// pub mod embed;
+pub mod embed;
 pub mod failing;
 pub mod faulty;
 pub mod render;

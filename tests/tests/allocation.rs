@@ -30,8 +30,7 @@ fn a_simulation_and_its_parameters() {
     let mut backend = backend();
     let strands = [random_strands(8, 8, 1, 1), random_strands(4, 6, 0, 2)];
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::Y, radius_a: 0.1, radius_b: 0.1 };
-    let descs: Vec<_> =
-        strands.iter().map(|strands| SectionDesc { strands, params: SimParams::default() }).collect();
+    let descs: Vec<_> = strands.iter().map(|strands| SectionDesc { strands, params: SimParams::default() }).collect();
     let (mut sim, failures) = backend.fail_everywhere(|backend| HairSim::new(backend, &descs, &[ball]));
     assert!(failures > 20, "{failures} creations");
     let before = backend.living();

@@ -18,7 +18,11 @@ mod support;
 const RANDOM: std::ops::Range<u64> = 1_000..3_000;
 
 /// Gives every broken list to `record`, then random ones; says how many there were of each, and how many of those were sound.
-fn hold<B: Run>(backend: &mut B, another: &mut B, mut record: impl FnMut(&mut B, &PassList) -> Result<()>) -> [usize; 3] {
+fn hold<B: Run>(
+    backend: &mut B,
+    another: &mut B,
+    mut record: impl FnMut(&mut B, &PassList) -> Result<()>,
+) -> [usize; 3] {
     let (complaints, descriptions) = broken_descriptions(backend);
     assert!(complaints.is_empty(), "{complaints:#?}");
     let world = World::new(backend, another);
@@ -42,7 +46,11 @@ fn hold<B: Run>(backend: &mut B, another: &mut B, mut record: impl FnMut(&mut B,
     }
     let ticket = list.read_buffer(marker, 0, bytes);
     assert!(run_and_read(backend, &list, ticket).iter().all(|&byte| byte == 0), "it works as before");
-    println!("{} broken lists, {descriptions} broken descriptions, {sound} of {} random lists run", broken.len(), RANDOM.count());
+    println!(
+        "{} broken lists, {descriptions} broken descriptions, {sound} of {} random lists run",
+        broken.len(),
+        RANDOM.count()
+    );
     [broken.len(), descriptions, sound]
 }
 

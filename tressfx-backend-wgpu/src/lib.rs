@@ -12,7 +12,6 @@
 
 mod device;
 mod error;
-mod label;
 mod limits;
 mod pipeline;
 mod read;

@@ -7,7 +7,6 @@ use tressfx_core::error::Result;
 use tressfx_core::pass::{Command, ComputePass, Count, Grid, Groups, Load, PassList, RasterPass};
 
 use crate::WgpuBackend;
-use crate::label;
 use crate::pipeline::Stage;
 use crate::read::Rows;
 use crate::timer::Frame;
@@ -32,14 +31,9 @@ impl Record for WgpuBackend {
         self.check_limits(list)?;
         self.check()?;
         let mut prepared = self.prepare(list)?;
-        let mut groups = label::Groups::default();
         for command in list.commands() {
-            if command.is_pass() {
-                groups.enter(encoder, command.scope());
-            }
             self.encode(encoder, command, &mut prepared);
         }
-        groups.enter(encoder, None);
         if let Some(frame) = prepared.frame {
             self.timer.end(&self.device, encoder, frame);
         }
@@ -106,6 +100,10 @@ impl WgpuBackend {
             timestamp_writes: prepared.frame.as_mut().map(Frame::compute_writes),
         });
         let Stage::Compute(pipeline) = &self.catalog.pipeline(pass.kernel.pipeline).stage else { return };
+        // Groups of an encoder may span command buffers, which lavapipe does not survive; those of a pass do not.
+        if let Some(scope) = &pass.scope {
+            compute.push_debug_group(scope);
+        }
         compute.set_pipeline(pipeline);
         compute.set_bind_group(0, prepared.bind_groups.next().as_ref(), &[]);
         match pass.groups {
@@ -113,6 +111,9 @@ impl WgpuBackend {
             Groups::Indirect { buffer, offset } => {
                 compute.dispatch_workgroups_indirect(self.catalog.buffer(buffer), offset);
             }
+        }
+        if pass.scope.is_some() {
+            compute.pop_debug_group();
         }
     }
 
@@ -145,6 +146,9 @@ impl WgpuBackend {
             occlusion_query_set: None,
             multiview_mask: None,
         });
+        if let Some(scope) = &pass.scope {
+            raster.push_debug_group(scope);
+        }
         if let Some(viewport) = pass.viewport {
             let ([x, y], [width, height]) = (viewport.origin, viewport.size);
             raster.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
@@ -158,6 +162,9 @@ impl WgpuBackend {
                 Count::Direct { vertices, instances } => raster.draw(0..vertices, 0..instances),
                 Count::Indirect { buffer, offset } => raster.draw_indirect(self.catalog.buffer(buffer), offset),
             }
+        }
+        if pass.scope.is_some() {
+            raster.pop_debug_group();
         }
     }
 }
