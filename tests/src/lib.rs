@@ -10,6 +10,7 @@
 //! [`embed_suite!`] as well: the team says in an [`Embed`](embed::Embed) how its engine begins and submits one.
 
 pub mod embed;
+pub mod failing;
 pub mod faulty;
 pub mod render;
 pub mod rules;

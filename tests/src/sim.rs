@@ -277,7 +277,7 @@ pub const REAL: [&str; 6] = [
 /// If the file cannot be read.
 pub fn real(path: &str) -> Option<Strands> {
     let Some(folder) = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from) else {
-        eprintln!("skipped: TRESSFX_ASSETS is not set, {path} is not read");
+        crate::suite::say_skipped(path, "TRESSFX_ASSETS is not set");
         return None;
     };
     Some(strands_of(tressfx_asset::read(folder.join(path)).expect("the groom reads"), 0))

@@ -133,7 +133,7 @@ pub fn test<B: Run + 'static, E: Display>(name: &str, make: impl Fn() -> Result<
 }
 
 /// Says so past the capture of test output: what did not run must be seen.
-pub(crate) fn say_skipped(name: &str, why: &str) {
+pub fn say_skipped(name: &str, why: &str) {
     let _ = writeln!(std::io::stderr(), "{name}: skipped: {why}");
 }
 

@@ -34,10 +34,17 @@ mod vulkan {
 
 /// On the backend that runs nothing: what it can be asked without results.
 mod null {
+    use tressfx_core::backend::Caps;
     use tressfx_core::error::Error;
     use tressfx_core::null::NullBackend;
 
-    tressfx_conformance::suite!(|| Ok::<_, Error>(NullBackend::default()), lacks: [ReadBack]);
+    tressfx_conformance::suite!(|| Ok::<_, Error>(null()), lacks: [ReadBack]);
+
+    fn null() -> NullBackend {
+        let mut caps = Caps::webgpu_default();
+        caps.read_back = false;
+        NullBackend::new(caps)
+    }
 }
 
 /// On the CPU, without passes.
@@ -76,25 +83,30 @@ mod lacking {
     #[test]
     #[should_panic(expected = "nobody said that the backend lacks that")]
     fn what_is_denied_in_silence_fails() {
-        let caps = Caps { compute: false, ..Caps::webgpu_default() };
+        let mut caps = Caps::webgpu_default();
+        caps.compute = false;
         test("hazards::compute_writes_twice", || Ok::<_, Error>(NullBackend::new(caps.clone())), &[Need::ReadBack]);
     }
 
     #[test]
     fn what_was_skipped_for_something_that_is_there_is_told() {
         let outcomes = [("one", Outcome::Skipped(Need::Compute)), ("two", Outcome::Skipped(Need::ReadBack))];
-        let told = promises(&NullBackend::default(), &outcomes).unwrap_err();
+        let mut caps = Caps::webgpu_default();
+        caps.read_back = false;
+        let told = promises(&NullBackend::new(caps), &outcomes).unwrap_err();
         assert!(told.contains("one: skipped") && !told.contains("two"), "{told}");
     }
 
     #[test]
     fn what_is_skipped_is_counted() {
-        let caps = Caps { read_back: false, ..Caps::webgpu_default() };
+        let mut caps = Caps::webgpu_default();
+        caps.read_back = false;
         let without_results = skipped(&caps);
         assert!(without_results.iter().all(|&need| need == Need::ReadBack));
         let expected = CASES.iter().filter(|case| case.needs.contains(&Need::ReadBack)).count();
         assert_eq!(without_results.len(), expected);
-        let without_passes = skipped(&Caps { compute: false, raster: false, ..caps });
+        (caps.compute, caps.raster) = (false, false);
+        let without_passes = skipped(&caps);
         for need in [Need::Compute, Need::Raster, Need::ReadBack] {
             assert!(without_passes.contains(&need), "{need}");
         }

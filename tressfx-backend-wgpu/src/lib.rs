@@ -11,11 +11,11 @@
 //! It decides nothing about hair and does not know what a window is.
 
 mod device;
+mod draw;
 mod error;
-mod label;
 mod limits;
 mod pipeline;
-mod read;
+mod reads;
 mod record;
 mod resource;
 mod run;
@@ -51,7 +51,7 @@ pub struct WgpuBackend {
     scopes: error::Scopes,
     bind_groups: sets::BindGroups,
     uploads: uploads::Belt,
-    reads: read::Reads,
+    reads: reads::Reads,
     timer: timer::Timer,
     /// Bytes that a raster pass can write for a pixel.
     target_bytes: u32,
@@ -69,7 +69,7 @@ impl WgpuBackend {
             scopes: error::Scopes::default(),
             bind_groups: sets::BindGroups::new(&device),
             uploads: uploads::Belt::default(),
-            reads: read::Reads::default(),
+            reads: reads::Reads::default(),
             timer: timer::Timer::new(&device, &queue),
             target_bytes: device.limits().max_color_attachment_bytes_per_sample,
             device,

@@ -6,7 +6,7 @@ use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Command, PassList, RasterPass};
 
 use crate::WgpuBackend;
-use crate::read::Rows;
+use crate::reads::Rows;
 use crate::tables::texture_format;
 
 impl WgpuBackend {

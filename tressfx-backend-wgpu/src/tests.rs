@@ -336,3 +336,9 @@ fn every_blend_has_a_word() {
         assert_eq!(crate::tables::blend_state(blend).unwrap().is_none(), blend == Blend::Replace);
     }
 }
+
+#[test]
+fn a_backend_goes_to_other_threads() {
+    fn goes<T: Send + Sync>() {}
+    goes::<WgpuBackend>();
+}

@@ -1,5 +1,6 @@
 //! A backend that runs nothing and keeps what it was asked: the place to start one's own from.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::backend::{
@@ -9,7 +10,7 @@ use crate::backend::{
 use crate::error::{Label, Result};
 use crate::hazards::Hazards;
 use crate::id::{BufferId, PipelineId, Resource, TextureId};
-use crate::pass::{PassList, Ticket};
+use crate::pass::{Command, PassList, Ticket};
 use crate::shader::{Kernel, RasterPipeline, Shader};
 
 /// Accepts what a device with its caps would accept, runs nothing.
@@ -17,6 +18,8 @@ use crate::shader::{Kernel, RasterPipeline, Shader};
 pub struct NullBackend {
     catalog: Catalog<(), (), ()>,
     hazards: Hazards,
+    /// Tickets of the lists that it was given.
+    reads: HashSet<Ticket>,
     /// Labels of all passes that it was given, in order.
     pub ran: Vec<Label>,
     /// The shaders of all pipelines that it was asked for, in order.
@@ -37,6 +40,7 @@ impl NullBackend {
         Self {
             catalog: Catalog::new(caps),
             hazards: Hazards::default(),
+            reads: HashSet::new(),
             ran: Vec::new(),
             shaders: Vec::new(),
             barriers: 0,
@@ -91,11 +95,13 @@ impl Backend for NullBackend {
     }
 
     /// Nothing ran, so no bytes come back.
-    fn read(&mut self, _ticket: Ticket) -> ReadBack {
-        ReadBack::Failed
+    fn read(&mut self, ticket: Ticket) -> ReadBack {
+        if self.reads.remove(&ticket) { ReadBack::Failed } else { ReadBack::Unknown }
     }
 
-    fn give_up(&mut self, _ticket: Ticket) {}
+    fn give_up(&mut self, ticket: Ticket) {
+        self.reads.remove(&ticket);
+    }
 
     fn timings(&mut self) -> Vec<Timing> {
         Vec::new()
@@ -114,6 +120,9 @@ impl Record for NullBackend {
         self.catalog.check(list)?;
         for command in list.commands() {
             self.barriers += usize::from(!self.hazards.before(command).is_empty());
+            if let Command::ReadBuffer { ticket, .. } | Command::ReadTexture { ticket, .. } = command {
+                self.reads.insert(*ticket);
+            }
         }
         self.ran.extend(list.labels());
         Ok(())

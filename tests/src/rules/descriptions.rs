@@ -67,7 +67,11 @@ fn textures(backend: &mut dyn Backend, caps: &Caps, answers: &mut Answers) {
     let edge = caps.max_texture_edge + 1;
     for size in [[0, 1], [1, 0], [0, 0], [edge, 1], [1, edge], [u32::MAX, u32::MAX]] {
         let answer = backend.create_texture(&TextureDesc::new("rules.texture", size, Format::Rgba8));
-        answers.hold(&format!("a texture of {size:?}"), answer, if size.contains(&0) { "a size" } else { "an edge" });
+        answers.hold(
+            &format!("a texture of {size:?}"),
+            answer,
+            if size.contains(&0) { "a size" } else { "a texture edge" },
+        );
     }
     for format in Format::ALL {
         let desc = TextureDesc::new("rules.texture", [4, 4], format);
@@ -104,7 +108,7 @@ const KERNELS: [(&str, &str, &str); 8] = [
         "@group(0) @binding(0) var<uniform> a: vec4<u32>;
         @group(0) @binding(0) var<storage, read_write> b: array<u32>;
         @compute @workgroup_size(1) fn main() { b[0] = a.x; }",
-        "binding",
+        "conflict",
     ),
     (
         "a texture that is read and written",

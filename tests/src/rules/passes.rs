@@ -56,7 +56,7 @@ fn grids(world: &World, passes: &Passes, found: &mut Mistakes) {
     add("an odd offset", world.buffer, 6, "6 is not a multiple of 4");
     add("past the end", world.buffer, BYTES - 8, OUTSIDE);
     add("an offset that overflows", world.buffer, u64::MAX - 3, OUTSIDE);
-    add("a buffer for something else", world.uniform, 0, "was not made for");
+    add("a buffer for something else", world.copy_source, 0, "was not made for");
     add("a buffer that is gone", world.gone, 0, NO_BUFFER);
     add("a buffer of another", world.foreign, 0, NO_BUFFER);
     add("bound as well", world.other, 0, "is bound in the same pass");
@@ -279,7 +279,7 @@ fn indirect_draws(world: &World, passes: &Passes, found: &mut Mistakes) {
     add("an odd offset", world.buffer, 2, "2 is not a multiple of 4");
     add("past the end", world.buffer, BYTES - 12, OUTSIDE);
     add("an offset that overflows", world.buffer, u64::MAX - 3, OUTSIDE);
-    add("a buffer for something else", world.uniform, 0, "was not made for");
+    add("a buffer for something else", world.copy_source, 0, "was not made for");
     add("a buffer that is gone", world.gone, 0, NO_BUFFER);
     add("a buffer of another", world.foreign, 0, NO_BUFFER);
 }

@@ -19,7 +19,8 @@ pub(crate) struct Copies {
 
 impl Copies {
     pub(crate) fn new() -> Self {
-        let caps = Caps { compute: false, raster: false, fragment_writes: false, ..Caps::webgpu_default() };
+        let mut caps = Caps::webgpu_default();
+        (caps.compute, caps.raster, caps.fragment_writes) = (false, false, false);
         Self { catalog: Catalog::new(caps), reads: HashMap::new() }
     }
 

@@ -20,7 +20,7 @@ pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
     match WgpuBackend::headless() {
         Ok(backend) => Some(Box::new(backend)),
         Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {
-            eprintln!("skipped: {error}");
+            tressfx_conformance::suite::say_skipped("a test of the GPU", &error.to_string());
             None
         }
         Err(error) => panic!("{error}"),

@@ -1,0 +1,66 @@
+//! An allocation that fails half way, whichever it is: what was made before goes again, and what was there stays as it was.
+
+use tressfx_conformance::failing::Failing;
+use tressfx_conformance::sim::random_strands;
+use tressfx_core::backend::{Caps, Format};
+use tressfx_core::glam::Vec3;
+use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
+use tressfx_core::shape::Capsule;
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_render::{HairRenderer, RenderDesc, Section, StrandInfo};
+use tressfx_sim::{HairSim, SectionDesc, SimParams};
+
+fn backend() -> Failing<NullBackend> {
+    Failing::new(NullBackend::new(Caps::webgpu_default()))
+}
+
+#[test]
+fn strand_buffers() {
+    let mut backend = backend();
+    let shape = StrandShape { guides: 5, follows: 1, vertices: 4 };
+    let (made, failures) = backend.fail_everywhere(|backend| StrandBuffers::new(backend, shape, Vec3::ZERO));
+    assert_eq!(failures, 3);
+    made.destroy(&mut backend);
+    assert_eq!(backend.living(), (0, 0));
+}
+
+#[test]
+fn a_simulation_and_its_parameters() {
+    let mut backend = backend();
+    let strands = [random_strands(8, 8, 1, 1), random_strands(4, 6, 0, 2)];
+    let ball = Capsule { a: Vec3::ZERO, b: Vec3::Y, radius_a: 0.1, radius_b: 0.1 };
+    let descs: Vec<_> = strands.iter().map(|strands| SectionDesc { strands, params: SimParams::default() }).collect();
+    let (mut sim, failures) = backend.fail_everywhere(|backend| HairSim::new(backend, &descs, &[ball]));
+    assert!(failures > 20, "{failures} creations");
+    let before = backend.living();
+    // Other iterations are other pipelines.
+    let params = SimParams { local_iterations: 7, length_iterations: 5, global_stiffness: 0.4, ..SimParams::default() };
+    let ((), failures) = backend.fail_everywhere(|backend| sim.set_params(backend, 0, params.clone()));
+    assert!(failures > 0, "new pipelines");
+    assert_eq!(backend.living(), before, "the old ones are gone");
+    sim.destroy(&mut backend);
+    assert_eq!(backend.living(), (0, 0));
+}
+
+#[test]
+fn a_renderer_its_size_and_its_sections() {
+    let mut backend = backend();
+    let desc = RenderDesc::new([64, 48], Format::Rgba16F);
+    let (mut renderer, failures) = backend.fail_everywhere(|backend| HairRenderer::new(backend, &desc));
+    assert!(failures > 6, "{failures} creations");
+    let before = backend.living();
+    let ((), failures) = backend.fail_everywhere(|backend| renderer.resize(backend, [96, 64]));
+    assert!(failures > 1, "{failures} creations");
+    assert!(backend.living().0 == before.0 && backend.living().1 > before.1, "as many, and larger");
+    let strands = random_strands(8, 8, 1, 1);
+    let info = StrandInfo::new(&strands);
+    let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
+    let (section, failures) =
+        backend.fail_everywhere(|backend| Section::new(backend, &mut PassList::new(), buffers, info.clone()));
+    assert!(failures > 1, "{failures} creations");
+    section.destroy(&mut backend);
+    renderer.destroy(&mut backend);
+    buffers.destroy(&mut backend);
+    assert_eq!(backend.living(), (0, 0));
+}
