@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use support::gpu;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::sim::{Rig, builtin, random_strands, wide};
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::Run;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::{SectionDesc, SimParams, StepInput, reference};
@@ -50,7 +50,7 @@ fn in_f64(strands: &Strands, shock: f32, speed: f32) -> Vec<DVec3> {
     tips(strands, &sim.positions(0))
 }
 
-fn on(backend: Box<dyn Backend>, strands: &Strands, shock: f32, speed: f32) -> Vec<DVec3> {
+fn on(backend: Box<dyn Run>, strands: &Strands, shock: f32, speed: f32) -> Vec<DVec3> {
     let params = SimParams { shock, ..SimParams::default() };
     let mut rig = Rig::new(backend, vec![(strands.clone(), params)], &[]);
     for input in inputs(strands, speed) {
