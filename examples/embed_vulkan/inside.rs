@@ -33,11 +33,10 @@ pub(crate) fn import(gpu: &mut VulkanBackend, engine: &Engine, size: [u32; 2]) -
     // SAFETY: they are images of this device, made with these sizes and formats, to be drawn to and sampled; and they live
     // until the backend is gone.
     unsafe {
-        Ok(Targets {
-            // The engine has just drawn to it, and samples it next.
-            color: gpu.import_texture(engine.light.image, &light, Import::COLOR_TARGET, Import::SAMPLED)?,
-            // It stays a depth target: the engine might go on drawing.
-            depth: gpu.import_texture(engine.depth.image, &depth, Import::DEPTH_TARGET, Import::DEPTH_TARGET)?,
-        })
+        // The engine has just drawn to it, and samples it next.
+        let color = gpu.import_texture(engine.light.image, &light, Import::COLOR_TARGET, Import::SAMPLED)?;
+        // It stays a depth target: the engine might go on drawing.
+        let depth = gpu.import_texture(engine.depth.image, &depth, Import::DEPTH_TARGET, Import::DEPTH_TARGET)?;
+        Ok(Targets::new(color, depth))
     }
 }

@@ -12,6 +12,7 @@
 pub mod embed;
 pub mod faulty;
 pub mod render;
+pub mod scene;
 pub mod show;
 pub mod sim;
 pub mod suite;
