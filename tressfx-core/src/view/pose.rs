@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(after(Vec3::splat(1.01)), PoseError::NotRigid);
         assert_eq!(after(Vec3::new(-1.0, 1.0, 1.0)), PoseError::NotRigid);
         assert_eq!(after(Vec3::splat(f32::NAN)), PoseError::NotFinite);
-        let perspective = Mat4::perspective_rh(1.0, 1.0, 0.1, 1.0);
+        let perspective = glam::camera::rh::proj::directx::perspective(1.0, 1.0, 0.1, 1.0);
         assert_eq!(Pose::from_matrix(perspective).unwrap_err(), PoseError::NotRigid);
         pose.validate().unwrap();
         assert_eq!(Pose { rotation: pose.rotation * 2.0, ..pose }.validate(), Err(PoseError::Length(2.0)));
