@@ -8,12 +8,10 @@ use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::{Backend, Format, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::{Pose, View};
-use tressfx_render::{
-    Backdrop, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section, SectionDraw,
-    StrandInfo, Surface, Targets,
-};
+use tressfx_core::view::{Camera, Pose};
+use tressfx_render::{HairRenderer, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw};
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, StepInput};
+use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
 const SIZE: [u32; 2] = [640, 640];
 const FORMAT: Format = Format::Rgba8Srgb;
@@ -36,20 +34,21 @@ fn main() -> Result<()> {
 
     // What is needed to draw it.
     let mut texture = |label, format| gpu.create_texture(&TextureDesc::new(label, SIZE, format));
-    let targets = Targets { color: texture("color", FORMAT)?, depth: texture("depth", Format::Depth32F)? };
-    let view = View::around(&strands.rest.iter().map(|vertex| vertex.truncate()).collect::<Vec<_>>(), SIZE);
-    let (lights, material) = (Lights::default(), Material::default());
-    let scene = ScenePass::new(&mut gpu, FORMAT, view.depth)?;
+    let targets = Targets::new(texture("color", FORMAT)?, texture("depth", Format::Depth32F)?);
+    let view =
+        Camera::around(&strands.rest.iter().map(|vertex| vertex.truncate()).collect::<Vec<_>>(), SIZE).view(SIZE)?;
+    let (lights, material) = (studio_lights(), Material::default());
+    let scene = ScenePass::new(&mut gpu, FORMAT, view.depth())?;
     let head = SceneMesh::new(&mut gpu, &mut list, &groom.mesh())?;
-    let hair = Section::new(&mut gpu, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+    let hair = ShadedStrands::new(&mut gpu, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
     let mut renderer = HairRenderer::new(&mut gpu, &RenderDesc::new(SIZE, FORMAT))?;
 
     // The head, and the hair over it.
     let head = MeshDraw { mesh: &head, surface: Surface::default(), pose: Pose::IDENTITY };
-    let draws = [SectionDraw { section: &hair, material: &material, pose: sim.pose() }];
+    let draws = [SectionDraw::new(&hair, &material, sim.pose())];
     renderer.reserve(&mut gpu, &view, &draws)?;
-    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head]);
-    renderer.draw(&mut list, &view, &lights, &targets, &draws);
+    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head])?;
+    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws)?;
     let picture = list.read_texture(targets.color);
 
     gpu.run(&list)?;

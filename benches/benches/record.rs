@@ -10,8 +10,10 @@ use tressfx_backend_wgpu::{WgpuBackend, wgpu};
 use tressfx_core::backend::{Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::{Pose, View};
-use tressfx_render::{HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets};
+use tressfx_core::view::{Camera, Pose, View};
+use tressfx_render::{
+    HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
+};
 use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput, Wind};
 
 /// Few strands: the CPU does not look at them.
@@ -23,7 +25,7 @@ const SIZE: [u32; 2] = [128, 72];
 struct Frames {
     sim: HairSim,
     renderer: HairRenderer,
-    sections: Vec<Section>,
+    sections: Vec<ShadedStrands>,
     targets: Targets,
     view: View,
     material: Material,
@@ -39,15 +41,15 @@ impl Frames {
         let mut uploads = PassList::new();
         let sim = HairSim::new(backend, &mut uploads, &sections, 0).expect("a simulation");
         let points: Vec<_> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
-        let view = View::around(&points, SIZE);
+        let view = Camera::around(&points, SIZE).view(SIZE).expect("a view");
         let info = StrandInfo::new(&strands);
-        let section = |&buffers| Section::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
+        let section = |&buffers| ShadedStrands::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
         let sections = sim.buffers().iter().map(section).collect();
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, SIZE, format));
-        let targets = Targets {
-            color: texture("color", Format::Rgba16F).expect("a texture"),
-            depth: texture("depth", Format::Depth32F).expect("a texture"),
-        };
+        let targets = Targets::new(
+            texture("color", Format::Rgba16F).expect("a texture"),
+            texture("depth", Format::Depth32F).expect("a texture"),
+        );
         let renderer = HairRenderer::new(backend, &RenderDesc::new(SIZE, Format::Rgba16F)).expect("a renderer");
         backend.run(&uploads).expect("the uploads run");
         Self { sim, renderer, sections, targets, view, material: Material::default(), lights: Lights::default() }
@@ -59,9 +61,10 @@ impl Frames {
         let wind = Wind::new(glam::Vec3::new(2.0, 0.0, 1.0));
         self.sim.step(list, &StepInput::new(1.0 / 60.0, Pose::IDENTITY).with_wind(wind)).expect("a step");
         let (material, pose) = (&self.material, self.sim.pose());
-        let draw = |section| SectionDraw { section, material, pose };
+        let draw = |section| SectionDraw::new(section, material, pose);
         let draws: Vec<_> = self.sections.iter().map(draw).collect();
-        self.renderer.draw(list, &self.view, &self.lights, &self.targets, &draws);
+        let view = ViewDraw::new(&self.view, &self.lights, self.targets);
+        self.renderer.draw(list, &[view], &draws).expect("a view that can be drawn");
     }
 
     /// A frame in a row of frames.

@@ -15,9 +15,10 @@ use tressfx_core::backend::{Backend, Format, Run, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets, gpu, reference,
+    Counters, HairRenderer, Light, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    ViewDraw, reference, uniforms,
 };
 
 const FRAMES: usize = 100;
@@ -56,7 +57,7 @@ fn bench(backend: &mut WgpuBackend, groom: &str) -> Result<(), Failure> {
     let mut uploads = PassList::new();
     let buffers = StrandBuffers::new(backend, StrandShape::of(&strands), Vec3::ZERO)?;
     buffers.upload(&mut uploads, &strands);
-    let section = Section::new(backend, &mut uploads, buffers, StrandInfo::new(&strands))?;
+    let section = ShadedStrands::new(backend, &mut uploads, buffers, StrandInfo::new(&strands))?;
     backend.run(&uploads)?;
     let mut stage = Stage::new(backend, &strands, [1920, 1080])?;
     let (counters, times) = stage.time(backend, &section)?;
@@ -104,31 +105,32 @@ struct Stage {
 impl Stage {
     fn new(backend: &mut WgpuBackend, strands: &Strands, size: [u32; 2]) -> Result<Self, Failure> {
         let points: Vec<Vec3> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
-        let view = View::around(&points, size);
+        let view = Camera::around(&points, size).view(size)?;
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, size, format));
-        let targets = Targets { color: texture("color", Format::Rgba16F)?, depth: texture("depth", Format::Depth32F)? };
+        let targets = Targets::new(texture("color", Format::Rgba16F)?, texture("depth", Format::Depth32F)?);
         let renderer = HairRenderer::new(backend, &RenderDesc::new(size, Format::Rgba16F))?;
         Ok(Self { view, targets, renderer })
     }
 
-    fn record(&self, section: &Section) -> PassList {
+    fn record(&mut self, section: &ShadedStrands) -> Result<PassList, Failure> {
         let mut list = PassList::new();
         let clear = RasterPass::new("clear").color(self.targets.color, Load::Clear([0.0; 4]));
-        list.raster(clear.depth(self.targets.depth, Load::Clear(self.view.depth.far())));
-        let draw = SectionDraw { section, material: &Material::default(), pose: Pose::IDENTITY };
-        self.renderer.draw(&mut list, &self.view, &Lights::default(), &self.targets, &[draw]);
-        list
+        list.raster(clear.depth(self.targets.depth, Load::Clear(self.view.depth().far())));
+        let (lights, material) = (lights(), Material::default());
+        let view = ViewDraw::new(&self.view, &lights, self.targets);
+        self.renderer.draw(&mut list, &[view], &[SectionDraw::new(section, &material, Pose::IDENTITY)])?;
+        Ok(list)
     }
 
     /// What the last frame drew, and how long each pass took.
-    fn time(&mut self, backend: &mut WgpuBackend, section: &Section) -> Result<(Counters, Times), Failure> {
+    fn time(&mut self, backend: &mut WgpuBackend, section: &ShadedStrands) -> Result<(Counters, Times), Failure> {
         let mut times = Times::new();
         let mut counters = Counters::default();
         let (start, mut measured) = (Instant::now(), 0);
         while measured < FRAMES {
             let warm = start.elapsed() > WARM_UP;
-            let mut list = self.record(section);
-            let ticket = self.renderer.read_counters(&mut list);
+            let mut list = self.record(section)?;
+            let ticket = self.renderer.read_counters(&mut list, 0);
             backend.run(&list)?;
             counters = Counters::from_bytes(&backend.read(ticket).ready().ok_or("no counters")?);
             self.renderer.observe(backend, &counters)?;
@@ -142,32 +144,45 @@ impl Stage {
     }
 
     /// Peak signal-to-noise ratio of the picture in decibels.
-    fn error(mut self, backend: &mut WgpuBackend, section: &Section, strands: &Strands) -> Result<f64, Failure> {
-        let draw = SectionDraw { section, material: &Material::default(), pose: Pose::IDENTITY };
+    fn error(mut self, backend: &mut WgpuBackend, section: &ShadedStrands, strands: &Strands) -> Result<f64, Failure> {
+        let material = Material::default();
+        let draw = SectionDraw::new(section, &material, Pose::IDENTITY);
         self.renderer.reserve(backend, &self.view, &[draw])?;
-        let mut list = self.record(section);
+        let mut list = self.record(section)?;
         let ticket = list.read_texture(self.targets.color);
         backend.run(&list)?;
         let bytes = backend.read(ticket).ready().ok_or("no picture")?;
         let channel = |pair: &[u8]| half::f16::from_le_bytes([pair[0], pair[1]]).to_f64();
         let picture = bytes.chunks(8).map(|texel| DVec4::from_array([0, 2, 4, 6].map(|i| channel(&texel[i..]))));
-        let far = self.view.depth.far();
-        let frame = gpu::Frame::new(&self.view, &Lights::default(), self.renderer.capacity());
-        let exact = exact(&frame, strands, draw.uniform(), far);
+        let exact = exact(&self.view, strands, draw.uniform());
         let squares = picture.zip(&exact).map(|(a, b)| (a - *b).length_squared()).sum::<f64>();
         Ok(-10.0 * (squares / (4 * exact.len()) as f64).log10())
     }
 }
 
-fn exact(frame: &gpu::Frame, strands: &Strands, uniform: gpu::Section, far: f32) -> Vec<DVec4> {
+fn exact(view: &View, strands: &Strands, uniform: uniforms::SectionUniform) -> Vec<DVec4> {
     let copies = 1 + strands.follows as usize;
     let arrays = |values: Vec<glam::Vec4>| values.into_iter().map(|v| v.to_array()).collect::<Vec<_>>();
-    let section = reference::Section {
+    let section = reference::Strands {
         uniform,
         positions: &arrays(strands.interleave(&strands.rest_of_all())),
         tangents: &arrays(strands.interleave(&strands.tangents.repeat(copies))),
-        openness: &StrandInfo::new(strands).openness,
+        visibility: &StrandInfo::new(strands).visibility,
         thickness: &strands.interleave(&strands.thickness),
     };
-    reference::exact(frame, &[section], &|_| far)
+    let far = view.depth().far();
+    reference::exact(view, &lights(), &[section], &|_| far)
+}
+
+/// Light from above on the right, as in a studio.
+fn lights() -> Lights {
+    Lights {
+        sky: Vec3::new(0.22, 0.24, 0.28),
+        ground: Vec3::new(0.09, 0.08, 0.07),
+        lights: vec![
+            Light::directional(Vec3::new(0.75, 0.8, 0.75), Vec3::new(2.3, 2.1, 1.85)),
+            Light::directional(Vec3::new(-0.9, 0.25, 0.6), Vec3::new(0.35, 0.42, 0.55)),
+            Light::directional(Vec3::new(-0.45, 0.65, -0.9), Vec3::new(1.1, 1.2, 1.4)),
+        ],
+    }
 }

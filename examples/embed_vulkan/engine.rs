@@ -79,7 +79,7 @@ const COPIED: Use =
 impl Engine {
     pub(crate) fn new(gpu: Gpu, stage: &Stage) -> Result<Self> {
         use vk::{BufferUsageFlags as B, ImageUsageFlags as I};
-        let size = stage.view.size;
+        let size = stage.view.size();
         // What the hair asks for: it draws to the light and samples the depth.
         let light = gpu.image(size, LIGHT, I::COLOR_ATTACHMENT | I::SAMPLED)?;
         let depth = gpu.image(size, DEPTH, I::DEPTH_STENCIL_ATTACHMENT | I::SAMPLED)?;

@@ -29,11 +29,10 @@ pub(crate) fn import(gpu: &mut VulkanBackend, engine: &Engine, size: [u32; 2]) -
     // SAFETY: they are images of this device, made with these sizes and formats, to be drawn to and sampled; and they live
     // until the backend is gone.
     unsafe {
-        Ok(Targets {
-            // The engine has just drawn to it, and samples it next.
-            color: gpu.import_texture(engine.light.image, &light, EngineUse::COLOR_TARGET, EngineUse::SAMPLED)?,
-            // It stays a depth target: the engine might go on drawing.
-            depth: gpu.import_texture(engine.depth.image, &depth, EngineUse::DEPTH_TARGET, EngineUse::DEPTH_TARGET)?,
-        })
+        // The engine has just drawn to it, and samples it next.
+        let color = gpu.import_texture(engine.light.image, &light, EngineUse::COLOR_TARGET, EngineUse::SAMPLED)?;
+        // It stays a depth target: the engine might go on drawing.
+        let depth = gpu.import_texture(engine.depth.image, &depth, EngineUse::DEPTH_TARGET, EngineUse::DEPTH_TARGET)?;
+        Ok(Targets::new(color, depth))
     }
 }

@@ -40,10 +40,11 @@ impl Engine {
         use wgpu::TextureUsages as Usage;
         // What the hair asks for: it draws to the light and samples the depth.
         let light =
-            texture(&device, "light", stage.view.size, LIGHT, Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING);
+            texture(&device, "light", stage.view.size(), LIGHT, Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING);
         let depth =
-            texture(&device, "depth", stage.view.size, DEPTH, Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING);
-        let picture = texture(&device, "picture", stage.view.size, PICTURE, Usage::RENDER_ATTACHMENT | Usage::COPY_SRC);
+            texture(&device, "depth", stage.view.size(), DEPTH, Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING);
+        let picture =
+            texture(&device, "picture", stage.view.size(), PICTURE, Usage::RENDER_ATTACHMENT | Usage::COPY_SRC);
         let buffer = |contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("stage"), contents, usage })
         };

@@ -26,7 +26,7 @@ fn main() -> Result<()> {
     let mut gpu = WgpuBackend::new(engine.device.clone(), engine.queue.clone());
     let color = gpu.import_texture("engine.light", engine.light.clone())?;
     let depth = gpu.import_texture("engine.depth", engine.depth.clone())?;
-    let mut hair = Hair::new(&mut gpu, &args.groom, &stage.view, Format::Rgba16F, Targets { color, depth })?;
+    let mut hair = Hair::new(&mut gpu, &args.groom, &stage.view, Format::Rgba16F, Targets::new(color, depth))?;
 
     for frame in 1..=args.frames {
         let head = head(f64::from(frame) * DT);

@@ -10,7 +10,9 @@ use tressfx_core::backend::{Backend, Format, ReadBack};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Pose, View};
-use tressfx_render::{Counters, HairRenderer, Lights, Material, RenderDesc, Section, SectionDraw, StrandInfo, Targets};
+use tressfx_render::{
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
+};
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, StepInput};
 
 /// A groom that an engine simulates and draws.
@@ -18,7 +20,7 @@ pub struct Hair {
     sim: HairSim,
     /// What moves with the head.
     colliders: Vec<Collider<'static>>,
-    section: Section,
+    section: ShadedStrands,
     material: Material,
     renderer: HairRenderer,
     targets: Targets,
@@ -45,10 +47,10 @@ impl Hair {
         let colliders = Collider::all_with_head(&groom.capsules());
         let mut list = PassList::new();
         let sim = HairSim::new(backend, &mut list, &[section], colliders.len())?;
-        let section = Section::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
-        let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size, format))?;
+        let section = ShadedStrands::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+        let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size(), format))?;
         let material = Material::default();
-        renderer.reserve(backend, view, &[SectionDraw { section: &section, material: &material, pose: sim.pose() }])?;
+        renderer.reserve(backend, view, &[SectionDraw::new(&section, &material, sim.pose())])?;
         Ok(Self { sim, colliders, section, material, renderer, targets, list, counters: VecDeque::new() })
     }
 
@@ -62,9 +64,9 @@ impl Hair {
             self.list.clear_commands();
         }
         self.sim.step(&mut self.list, &StepInput::new(dt, head).with_colliders(&self.colliders))?;
-        let draws = [SectionDraw { section: &self.section, material: &self.material, pose: self.sim.pose() }];
-        self.renderer.draw(&mut self.list, view, lights, &self.targets, &draws);
-        self.counters.push_back(self.renderer.read_counters(&mut self.list));
+        let draws = [SectionDraw::new(&self.section, &self.material, self.sim.pose())];
+        self.renderer.draw(&mut self.list, &[ViewDraw::new(view, lights, self.targets)], &draws)?;
+        self.counters.push_back(self.renderer.read_counters(&mut self.list, 0));
         Ok(&self.list)
     }
 
@@ -98,10 +100,10 @@ impl Hair {
     /// # Errors
     /// What the backend says.
     pub fn resize(&mut self, backend: &mut dyn Backend, view: &View, targets: Targets) -> Result<()> {
-        let Targets { color, depth } = std::mem::replace(&mut self.targets, targets);
-        [color, depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
-        self.renderer.resize(backend, view.size)?;
-        let draw = SectionDraw { section: &self.section, material: &self.material, pose: self.sim.pose() };
+        let old = std::mem::replace(&mut self.targets, targets);
+        [old.color, old.depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
+        self.renderer.resize(backend, view.size())?;
+        let draw = SectionDraw::new(&self.section, &self.material, self.sim.pose());
         Ok(self.renderer.reserve(backend, view, &[draw])?)
     }
 

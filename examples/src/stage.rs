@@ -4,8 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 use tressfx_asset::builtin::Builtin;
 use tressfx_core::strands::Bounds;
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{LightPlace, Lights};
+use tressfx_viewer::scene::studio_lights;
 
 /// A vertex of the engines' own meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -58,8 +59,8 @@ impl Stage {
         let mut stage = Self {
             vertices,
             indices: bust.indices,
-            view: View::around(&points, size),
-            lights: Lights::default(),
+            view: Camera::around(&points, size).view(size).expect("a camera that sees its points"),
+            lights: studio_lights(),
             floor: middle.extend(8.0 * bounds.radius()),
         };
         stage.lay_floor();

@@ -61,7 +61,7 @@ impl Images {
         // SAFETY: they are images of this device, made so, and live until the backend says that it uses them no more.
         unsafe {
             let color = hair.import_texture(self.light, &light, color, color)?;
-            Ok(Targets { color, depth: hair.import_texture(self.depth, &depth, tested, tested)? })
+            Ok(Targets::new(color, hair.import_texture(self.depth, &depth, tested, tested)?))
         }
     }
 }

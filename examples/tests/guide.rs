@@ -15,10 +15,10 @@ use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Backdrop, HairRenderer, Lights, MAX_LIGHTS, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
-    SectionDraw, StrandInfo, Surface, Targets,
+    HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, StepInput, Wind};
 
@@ -63,9 +63,8 @@ fn what_has_no_file_has_its_defaults_too() {
     let StrandOptions { vertices, follows, follow_radius, tip_separation, shuffle, seed, metres_per_unit } =
         StrandOptions::default();
     let Wind { velocity, half_angle, gust_period } = Wind::default();
-    let RenderDesc { size: _, target: _, k, max_node_bytes } = RenderDesc::new([1, 1], Format::Rgba16F);
-    let Lights { sky, ground, lights: _ } = Lights::default();
-    let tables: [(&str, &[(&str, String)]); 4] = [
+    let PpllDesc { k, max_node_bytes, count_limit, .. } = PpllDesc::default();
+    let tables: [(&str, &[(&str, String)]); 3] = [
         (
             "Strands",
             &[
@@ -86,8 +85,14 @@ fn what_has_no_file_has_its_defaults_too() {
                 ("gust_period", format!("{gust_period:?}")),
             ],
         ),
-        ("Renderer", &[("k", k.to_string()), ("max_node_bytes", max_node_bytes.to_string())]),
-        ("Light", &[("sky", format!("{:?}", sky.to_array())), ("ground", format!("{:?}", ground.to_array()))]),
+        (
+            "Renderer",
+            &[
+                ("k", k.to_string()),
+                ("max_node_bytes", max_node_bytes.to_string()),
+                ("count_limit", count_limit.to_string()),
+            ],
+        ),
     ];
     for (heading, expected) in tables {
         let rows = rows(heading);
@@ -125,17 +130,15 @@ fn everything() -> PassList {
         sim.step(&mut list, &StepInput::new(1.0 / 60.0, head).with_colliders(&colliders).with_wind(wind)).unwrap();
     }
     let size = [64, 64];
-    let view = View::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size);
+    let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
-    let targets = Targets { color: texture(Format::Rgba16F), depth: texture(Format::Depth32F) };
-    let scene = ScenePass::new(&mut backend, Format::Rgba16F, view.depth).unwrap();
-    let mesh = SceneMesh::new(&mut backend, &mut list, &groom.mesh()).unwrap();
-    let mesh = MeshDraw { mesh: &mesh, surface: Surface::default(), pose: Pose::IDENTITY };
-    scene.draw(&mut list, &view, &Lights::default(), &targets, &Backdrop::default(), &[mesh]);
-    let section = Section::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
-    let renderer = HairRenderer::new(&mut backend, &RenderDesc::new(size, Format::Rgba16F)).unwrap();
-    let draw = SectionDraw { section: &section, material: &Material::default(), pose: sim.pose() };
-    renderer.draw(&mut list, &view, &Lights::default(), &targets, &[draw]);
+    let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+    let section = ShadedStrands::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
+    let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new(size, Format::Rgba16F)).unwrap();
+    let material = Material::default();
+    let draw = SectionDraw::new(&section, &material, sim.pose());
+    let lights = Lights::default();
+    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     list
 }
 

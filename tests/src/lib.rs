@@ -14,6 +14,7 @@ pub mod failing;
 pub mod faulty;
 pub mod render;
 pub mod rules;
+pub mod scene;
 pub mod show;
 pub mod sim;
 pub mod suite;

@@ -6,11 +6,13 @@ use tressfx_core::backend::{DepthOrder, Format, Run, TextureDesc};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
-    SectionDraw, StrandInfo, Surface, Targets, gpu, reference,
+    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    ViewDraw, reference, uniforms,
 };
+
+use crate::scene::{SceneMesh, ScenePass, lights};
 
 /// Strands without follow strands, in the order of the GPU.
 #[derive(Clone, Debug)]
@@ -50,7 +52,7 @@ impl Groom {
             info: StrandInfo {
                 metres_per_unit: 1.0,
                 fitting_radius: 0.000_1,
-                openness: openness(strands.len() * vertices),
+                visibility: visibility(strands.len() * vertices),
                 sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
             },
             material,
@@ -77,19 +79,19 @@ impl Groom {
     }
 
     /// As the references take it.
-    pub fn reference(&self) -> reference::Section<'_> {
-        reference::Section {
-            uniform: gpu::Section::new(self.shape, &self.info, &self.material, &self.pose),
+    pub fn reference(&self) -> reference::Strands<'_> {
+        reference::Strands {
+            uniform: uniforms::SectionUniform::new(self.shape, &self.info, &self.material, &self.pose),
             positions: &self.positions,
             tangents: &self.tangents,
-            openness: &self.info.openness,
+            visibility: &self.info.visibility,
             thickness: &self.thickness,
         }
     }
 }
 
 /// Some light from everywhere, differently for each vertex.
-fn openness(count: usize) -> Vec<[f32; 4]> {
+fn visibility(count: usize) -> Vec<[f32; 4]> {
     let mut random = Random(77);
     let mut value = || 0.6 * random.unit() - 0.3;
     (0..count).map(|_| [value(), value(), value(), 0.6 + value()]).collect()
@@ -154,11 +156,37 @@ impl Difference {
     }
 }
 
+/// How a screen is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
+    /// The camera.
+    pub camera: Camera,
+    /// Pixels.
+    pub size: [u32; 2],
+    /// The technique.
+    pub technique: PpllDesc,
+}
+
+impl Default for Setup {
+    /// 96 x 64 pixels that look along -z at the origin from a distance of 3.
+    fn default() -> Self {
+        let camera = Camera {
+            eye: Vec3::new(0.0, 0.0, 3.0),
+            target: Vec3::ZERO,
+            fov: 0.6,
+            near: 0.05,
+            far: 50.0,
+            depth: DepthOrder::Reverse,
+        };
+        Self { camera, size: [96, 64], technique: PpllDesc::default() }
+    }
+}
+
 /// A screen to draw on.
-pub struct Stage {
+pub struct Screen {
     /// The GPU.
     pub backend: Box<dyn Run>,
-    /// The camera.
+    /// Where the picture is taken from.
     pub view: View,
     /// The light.
     pub lights: Lights,
@@ -170,73 +198,68 @@ pub struct Stage {
     depth: TextureId,
 }
 
-impl Stage {
-    /// A screen of 96 x 64 pixels that looks along -z at the origin from a distance of 3, unless `change` says otherwise.
+impl Screen {
+    /// A screen as [`Setup`] makes it by default, unless `change` says otherwise.
     ///
     /// # Panics
     /// If the backend refuses what it asks for.
-    pub fn new(mut backend: Box<dyn Run>, change: impl FnOnce(&mut RenderDesc, &mut View)) -> Self {
-        let mut view = View {
-            eye: Vec3::new(0.0, 0.0, 3.0),
-            target: Vec3::ZERO,
-            fov: 0.6,
-            near: 0.05,
-            far: 50.0,
-            size: [96, 64],
-            depth: DepthOrder::Reverse,
-        };
-        let mut desc = RenderDesc::new(view.size, Format::Rgba16F);
-        change(&mut desc, &mut view);
-        desc.size = view.size;
+    pub fn new(mut backend: Box<dyn Run>, change: impl FnOnce(&mut Setup)) -> Self {
+        let mut setup = Setup::default();
+        change(&mut setup);
+        let Setup { camera, size, technique } = setup;
+        let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);
         let renderer = HairRenderer::new(&mut *backend, &desc).expect("a renderer");
         let mut texture =
-            |label, format| backend.create_texture(&TextureDesc::new(label, view.size, format)).expect("a texture");
+            |label, format| backend.create_texture(&TextureDesc::new(label, size, format)).expect("a texture");
         let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
-        Self { backend, view, lights: Lights::default(), renderer, may_grow: true, color, depth }
-    }
-
-    /// What the shaders are given.
-    pub fn frame(&self) -> gpu::Frame {
-        gpu::Frame::new(&self.view, &self.lights, self.renderer.capacity())
+        let view = camera.view(size).expect("a view");
+        Self { backend, view, lights: lights(), renderer, may_grow: true, color, depth }
     }
 
     /// What is drawn to.
     pub fn targets(&self) -> Targets {
-        Targets { color: self.color, depth: self.depth }
+        Targets::new(self.color, self.depth)
+    }
+
+    /// The picture in f64, with all fragments in order and nothing behind them.
+    pub fn exact(&self, grooms: &[&Groom]) -> Vec<DVec4> {
+        let far = self.view.depth().far();
+        let strands: Vec<_> = grooms.iter().map(|groom| groom.reference()).collect();
+        reference::exact(&self.view, &self.lights, &strands, &|_| far)
     }
 
     /// Uploads a groom with the next run of `list`.
-    pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> Section {
+    pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> ShadedStrands {
         let buffers = StrandBuffers::new(&mut *self.backend, groom.shape, Vec3::ZERO).expect("buffers");
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
-        Section::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section")
+        ShadedStrands::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section")
     }
 
     /// Hair over nothing.
     pub fn hair(&mut self, grooms: &[&Groom]) -> Picture {
+        let view = self.view;
+        self.views(&[view], grooms)
+    }
+
+    /// Hair over nothing, from several views into parts of one target.
+    pub fn views(&mut self, views: &[View], grooms: &[&Groom]) -> Picture {
         let mut list = PassList::new();
         let pass = RasterPass::new("test.clear").color(self.color, Load::Clear([0.0; 4]));
-        list.raster(pass.depth(self.depth, Load::Clear(self.view.depth.far())));
-        self.over(list, grooms)
+        list.raster(pass.depth(self.depth, Load::Clear(self.view.depth().far())));
+        self.over(list, views, grooms)
     }
 
     /// Hair and meshes.
-    pub fn scene(&mut self, meshes: &[(&Mesh, Surface)], grooms: &[&Groom]) -> Picture {
+    pub fn scene(&mut self, meshes: &[&Mesh], grooms: &[&Groom]) -> Picture {
         let mut list = PassList::new();
-        let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, self.view.depth).expect("a scene pass");
-        let made: Vec<_> = meshes
-            .iter()
-            .map(|(mesh, _)| SceneMesh::new(&mut *self.backend, &mut list, mesh).expect("a mesh"))
-            .collect();
-        let draws: Vec<_> = made
-            .iter()
-            .zip(meshes)
-            .map(|(mesh, (_, surface))| MeshDraw { mesh, surface: *surface, pose: Pose::IDENTITY })
-            .collect();
-        pass.draw(&mut list, &self.view, &self.lights, &self.targets(), &Backdrop::default(), &draws);
-        self.over(list, grooms)
+        let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, self.view.depth()).expect("a scene pass");
+        let made: Vec<_> =
+            meshes.iter().map(|mesh| SceneMesh::new(&mut *self.backend, &mut list, mesh).expect("a mesh")).collect();
+        pass.draw(&mut list, &self.view, glam::Mat4::IDENTITY, &self.targets(), &made);
+        let view = self.view;
+        self.over(list, &[view], grooms)
     }
 
     /// Bytes that the backend holds.
@@ -251,22 +274,22 @@ impl Stage {
         bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut *self.backend, &list, ticket))
     }
 
-    fn over(&mut self, mut list: PassList, grooms: &[&Groom]) -> Picture {
+    fn over(&mut self, mut list: PassList, views: &[View], grooms: &[&Groom]) -> Picture {
         let sections: Vec<_> = grooms.iter().map(|groom| self.section(&mut list, groom)).collect();
-        let draws: Vec<_> = sections
-            .iter()
-            .zip(grooms)
-            .map(|(section, groom)| SectionDraw { section, material: &groom.material, pose: groom.pose })
-            .collect();
+        let pairs = sections.iter().zip(grooms);
+        let draws: Vec<_> =
+            pairs.map(|(strands, groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
         if self.may_grow {
-            self.renderer.reserve(&mut *self.backend, &self.view, &draws).expect("a pool");
+            views.iter().for_each(|view| self.renderer.reserve(&mut *self.backend, view, &draws).expect("a pool"));
         }
-        self.renderer.draw(&mut list, &self.view, &self.lights, &self.targets(), &draws);
-        let counters = self.renderer.read_counters(&mut list);
+        let targets = self.targets();
+        let drawn: Vec<_> = views.iter().map(|view| ViewDraw::new(view, &self.lights, targets)).collect();
+        self.renderer.draw(&mut list, &drawn, &draws).expect("views that can be drawn");
+        let counters = self.renderer.read_counters(&mut list, 0);
         let picture = list.read_texture(self.color);
         let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
         let counters = Counters::from_bytes(&self.backend.read(counters).ready().expect("it has run"));
         sections.into_iter().for_each(|section| section.destroy(&mut *self.backend));
-        Picture { size: self.view.size, bytes, counters }
+        Picture { size: self.view.size(), bytes, counters }
     }
 }

@@ -8,14 +8,15 @@ use tressfx_core::backend::{Format, Run, TextureDesc};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};
-use tressfx_core::view::View;
+use tressfx_core::view::{Camera, View};
 use tressfx_render::{
-    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
-    SectionDraw, StrandInfo, Surface, Targets,
+    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    ViewDraw,
 };
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams};
 
 use crate::run_and_read;
+use crate::scene::{SceneMesh, ScenePass, lights};
 use crate::sim::Motion;
 
 /// What the colour target holds: bytes as a screen takes them.
@@ -82,9 +83,10 @@ impl Scene {
 
     fn view(&self) -> View {
         let points: Vec<Vec3> = self.strands.rest_of_all().iter().map(|point| point.truncate()).collect();
-        let around = View::around(&points, self.size);
+        let around = Camera::around(&points, self.size);
         let reach = self.distance * around.eye.distance(around.target);
-        View { eye: around.target + reach * self.from.normalize(), ..around }
+        let camera = Camera { eye: around.target + reach * self.from.normalize(), ..around };
+        camera.view(self.size).expect("a view")
     }
 }
 
@@ -100,7 +102,7 @@ pub struct Show<B> {
     targets: Targets,
     body: ScenePass,
     meshes: Vec<SceneMesh>,
-    section: Section,
+    section: ShadedStrands,
     renderer: HairRenderer,
     frame: u32,
 }
@@ -116,17 +118,17 @@ impl<B: Run> Show<B> {
         let view = scene.view();
         let mut texture =
             |label, format| gpu.create_texture(&TextureDesc::new(label, scene.size, format)).expect("a texture");
-        let targets = Targets { color: texture("show.color", TARGET), depth: texture("show.depth", Format::Depth32F) };
+        let targets = Targets::new(texture("show.color", TARGET), texture("show.depth", Format::Depth32F));
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
-        let section = Section::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
+        let section = ShadedStrands::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
         let section = section.expect("a section");
-        let desc = RenderDesc { k: scene.k, ..RenderDesc::new(scene.size, TARGET) };
+        let desc = RenderDesc::new(scene.size, TARGET).technique(PpllDesc::default().k(scene.k));
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
-        let draw = SectionDraw { section: &section, material: &scene.material, pose: sim.pose() };
+        let draw = SectionDraw::new(&section, &scene.material, sim.pose());
         renderer.reserve(gpu, &view, &[draw]).expect("a pool");
-        let body = ScenePass::new(gpu, TARGET, view.depth).expect("a scene pass");
+        let body = ScenePass::new(gpu, TARGET, view.depth()).expect("a scene pass");
         gpu.run(&uploads).expect("the uploads run");
-        let lights = Lights::default();
+        let lights = lights();
         Self { backend, sim, scene: scene.clone(), view, lights, targets, body, meshes, section, renderer, frame: 0 }
     }
 
@@ -140,13 +142,10 @@ impl<B: Run> Show<B> {
         let colliders = Collider::all_with_head(&self.scene.capsules);
         let input = self.scene.motion.input(seconds, 1.0 / 60.0).with_colliders(&colliders);
         self.sim.step(list, &input).expect("the input is fine");
-        let Self { view, lights, targets, .. } = self;
-        let body = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: input.head };
-        let meshes: Vec<_> = self.meshes.iter().map(body).collect();
-        self.body.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
-        let pose = self.sim.pose();
-        let draw = SectionDraw { section: &self.section, material: &self.scene.material, pose };
-        self.renderer.draw(list, view, lights, targets, &[draw]);
+        let Self { view, lights, targets, body, meshes, renderer, .. } = self;
+        body.draw(list, view, input.head.matrix(), targets, meshes);
+        let draw = SectionDraw::new(&self.section, &self.scene.material, self.sim.pose());
+        renderer.draw(list, &[ViewDraw::new(view, lights, *targets)], &[draw]).expect("a view that can be drawn");
     }
 
     /// Runs so many frames.
@@ -165,7 +164,7 @@ impl<B: Run> Show<B> {
     /// The picture of the last frame, four bytes a pixel, and what was drawn in it.
     pub fn picture(&mut self) -> (Vec<u8>, Counters) {
         let mut list = PassList::new();
-        let counters = self.renderer.read_counters(&mut list);
+        let counters = self.renderer.read_counters(&mut list, 0);
         let picture = list.read_texture(self.targets.color);
         let picture = run_and_read(&mut self.backend, &list, picture);
         (picture, Counters::from_bytes(&self.backend.read(counters).ready().expect("the list has run")))

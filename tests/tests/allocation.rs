@@ -29,8 +29,7 @@ fn a_simulation_and_its_parameters() {
     let mut backend = backend();
     let strands = [random_strands(8, 8, 1, 1), random_strands(4, 6, 0, 2)];
     let descs: Vec<_> = strands.iter().map(|strands| SectionDesc::new(strands, SimParams::default())).collect();
-    let (mut sim, failures) =
-        backend.fail_everywhere(|backend| HairSim::new(backend, &mut PassList::new(), &descs, 1));
+    let (mut sim, failures) = backend.fail_everywhere(|backend| HairSim::new(backend, &mut PassList::new(), &descs, 1));
     assert!(failures > 20, "{failures} creations");
     let before = backend.living();
     // Other iterations are another kernel; kernels stay for sections that may need them again.

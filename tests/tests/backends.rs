@@ -36,7 +36,11 @@ fn scenes(groom: &Scene) -> Vec<Scene> {
         (
             "limp",
             SimParams { local_stiffness: 0.2, damping: 0.4, ..SimParams::default() },
-            Material { base_color: [0.02, 0.01, 0.01], opacity: 0.4, tip_opacity: 0.2, ..Material::default() },
+            Material::default().with(|m| {
+                m.base_color = Vec3::new(0.02, 0.01, 0.01);
+                m.opacity = 0.4;
+                m.tip_opacity = 0.2;
+            }),
             3,
         ),
     ];

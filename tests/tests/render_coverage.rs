@@ -3,29 +3,32 @@
 mod support;
 
 use glam::{DVec2, Vec3};
-use tressfx_conformance::render::{Groom, Stage};
+use tressfx_conformance::render::{Groom, Screen};
 use tressfx_render::{Light, Material, reference};
 
-use support::stage;
+use support::screen;
 
 /// A material that shades to one colour whatever the light.
-fn flat(stage: &mut Stage, material: Material) -> Material {
-    stage.lights.sky = Vec3::ONE;
-    stage.lights.ground = Vec3::ONE;
-    stage.lights.lights = Vec::<Light>::new();
-    Material {
-        base_color: [0.25, 0.5, 0.75],
-        tip_color: [0.25, 0.5, 0.75],
-        variation: 0.0,
-        root_shade: 0.0,
-        form: 0.0,
-        tip_width: 1.0,
-        ..material
-    }
+fn flat(screen: &mut Screen, material: Material) -> Material {
+    screen.lights.sky = Vec3::ONE;
+    screen.lights.ground = Vec3::ONE;
+    screen.lights.lights = Vec::<Light>::new();
+    material.with(|m| {
+        m.base_color = Vec3::new(0.25, 0.5, 0.75);
+        m.tip_color = Vec3::new(0.25, 0.5, 0.75);
+        m.variation = 0.0;
+        m.root_shade = 0.0;
+        m.self_shadow = 0.0;
+        m.tip_width = 1.0;
+    })
 }
 
 fn opaque(radius: f32) -> Material {
-    Material { fibre_radius: Some(radius), opacity: 1.0, tip_opacity: 1.0, ..Material::default() }
+    Material::default().with(|m| {
+        m.fibre_radius = Some(radius);
+        m.opacity = 1.0;
+        m.tip_opacity = 1.0;
+    })
 }
 
 /// A straight strand through the middle of the picture at an angle to the horizontal, 1 unit long.
@@ -37,13 +40,13 @@ fn line(angle: f32, vertices: u32) -> Vec<Vec3> {
 
 #[test]
 fn coverage_integrates_to_width_times_length() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
-    let pixels_per_unit = 1.0 / (stage.view.pixel_angle() * 3.0);
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let pixels_per_unit = screen.view.lens().focal.x / 3.0;
     for width in [0.02, 0.1, 0.4, 1.0, 2.5, 6.0f32] {
         for degrees in [0.0, 17.0, 45.0, 63.0, 90.0f32] {
-            let material = flat(&mut stage, opaque(0.5 * width / pixels_per_unit));
+            let material = flat(&mut screen, opaque(0.5 * width / pixels_per_unit));
             let groom = Groom::new(&[line(degrees.to_radians(), 7)], material);
-            let picture = stage.hair(&[&groom]);
+            let picture = screen.hair(&[&groom]);
             let area: f64 = picture.pixels().iter().map(|pixel| pixel.w).sum();
             let expected = f64::from(width * pixels_per_unit);
             let error = area / expected - 1.0;
@@ -56,12 +59,12 @@ fn coverage_integrates_to_width_times_length() {
 
 #[test]
 fn a_thin_strand_has_the_same_opacity_in_every_column() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
-    let pixels_per_unit = 1.0 / (stage.view.pixel_angle() * 3.0);
-    let material = flat(&mut stage, opaque(0.05 / pixels_per_unit));
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let pixels_per_unit = screen.view.lens().focal.x / 3.0;
+    let material = flat(&mut screen, opaque(0.05 / pixels_per_unit));
     for degrees in [0.0, 10.0, 30.0, 44.0f32] {
         let groom = Groom::new(&[line(degrees.to_radians(), 2)], material);
-        let pixels = stage.hair(&[&groom]).pixels();
+        let pixels = screen.hair(&[&groom]).pixels();
         let columns: Vec<f64> = (40..56).map(|x| (0..64).map(|y| pixels[y * 96 + x].w).sum()).collect();
         let expected = 0.1 / f64::from(degrees.to_radians().cos());
         for column in columns {
@@ -72,11 +75,11 @@ fn a_thin_strand_has_the_same_opacity_in_every_column() {
 
 #[test]
 fn segments_of_a_straight_strand_share_no_pixel_and_leave_none_out() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
-    let material = flat(&mut stage, opaque(0.02));
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let material = flat(&mut screen, opaque(0.02));
     for degrees in [0.0, 31.0, 45.0, 90.0f32] {
-        let whole = stage.hair(&[&Groom::new(&[line(degrees.to_radians(), 2)], material)]);
-        let parts = stage.hair(&[&Groom::new(&[line(degrees.to_radians(), 64)], material)]);
+        let whole = screen.hair(&[&Groom::new(&[line(degrees.to_radians(), 2)], material)]);
+        let parts = screen.hair(&[&Groom::new(&[line(degrees.to_radians(), 64)], material)]);
         assert_eq!(whole.counters, parts.counters, "{degrees} degrees");
         let difference = whole.difference(&parts.pixels());
         assert!(difference.max < 0.002, "{difference:?}");
@@ -85,15 +88,18 @@ fn segments_of_a_straight_strand_share_no_pixel_and_leave_none_out() {
 
 #[test]
 fn opacity_counts_once() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
+    let Some(mut screen) = screen(|_| ()) else { return };
     let middle = |picture: &tressfx_conformance::render::Picture| picture.pixels()[32 * 96 + 48];
     for opacity in [1.0, 0.5f32] {
-        let wide = Material { opacity, tip_opacity: opacity, ..flat(&mut stage, opaque(0.1)) };
+        let wide = flat(&mut screen, opaque(0.1)).with(|m| {
+            m.opacity = opacity;
+            m.tip_opacity = opacity;
+        });
         let groom = Groom::new(&[line(0.3, 2)], wide);
-        let pixel = middle(&stage.hair(&[&groom]));
+        let pixel = middle(&screen.hair(&[&groom]));
         let expected = f64::from(opacity) * glam::DVec4::new(0.25, 0.5, 0.75, 1.0);
         assert!((pixel - expected).abs().max_element() < 0.0006, "{pixel} instead of {expected}");
-        let twice = middle(&stage.hair(&[&groom, &groom]));
+        let twice = middle(&screen.hair(&[&groom, &groom]));
         let expected = (1.0 - (1.0 - f64::from(opacity)).powi(2)) * glam::DVec4::new(0.25, 0.5, 0.75, 1.0);
         assert!((twice - expected).abs().max_element() < 0.0012, "{twice} instead of {expected}");
     }
@@ -101,17 +107,17 @@ fn opacity_counts_once() {
 
 #[test]
 fn the_tip_has_its_own_width_and_opacity() {
-    let Some(mut stage) = stage(|desc, _| desc.k = 1) else { return };
-    let material = Material { tip_opacity: 0.25, ..flat(&mut stage, opaque(0.1)) };
+    let Some(mut screen) = screen(|setup| setup.technique.k = 1) else { return };
+    let material = flat(&mut screen, opaque(0.1)).with(|m| m.tip_opacity = 0.25);
     let groom = Groom::new(&[line(0.0, 2)], material);
-    let pixels = stage.hair(&[&groom]).pixels();
+    let pixels = screen.hair(&[&groom]).pixels();
     let row = |x: usize| pixels[32 * 96 + x].w;
     assert!(row(34) > 0.9 && row(62) < 0.4 && (row(48) - 0.625).abs() < 0.03, "{} {} {}", row(34), row(48), row(62));
-    let mut tapered = Groom::new(&[line(0.0, 2)], Material { tip_width: 0.2, ..flat(&mut stage, opaque(0.1)) });
+    let mut tapered = Groom::new(&[line(0.0, 2)], flat(&mut screen, opaque(0.1)).with(|m| m.tip_width = 0.2));
     tapered.thickness = vec![1.0, 0.0];
-    let pixels = stage.hair(&[&tapered]).pixels();
+    let pixels = screen.hair(&[&tapered]).pixels();
     let height = |x: usize| (0..64).map(|y| pixels[y * 96 + x].w).sum::<f64>();
-    let full = 0.2 / f64::from(stage.view.pixel_angle() * 3.0);
+    let full = 0.2 / f64::from(3.0 / screen.view.lens().focal.x);
     assert!((height(48) / full - 0.6).abs() < 0.03, "{} of {full}", height(48));
 }
 

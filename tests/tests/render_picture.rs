@@ -3,28 +3,32 @@
 mod support;
 
 use glam::DVec4;
-use tressfx_conformance::render::{Difference, Groom, Stage};
+use tressfx_conformance::render::{Difference, Groom, Screen};
 use tressfx_core::view::Pose;
 use tressfx_render::{Material, reference};
 
-use support::stage;
+use support::screen;
 
 /// Hair of about a third of a pixel on the test's screen, half of which is opaque.
 fn material() -> Material {
-    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+    })
 }
 
-fn nothing(stage: &Stage) -> impl Fn([u32; 2]) -> f32 + use<> {
-    let far = stage.view.depth.far();
+fn nothing(screen: &Screen) -> impl Fn([u32; 2]) -> f32 + use<> {
+    let far = screen.view.depth().far();
     move |_| far
 }
 
 #[test]
 fn few_strands_are_as_in_f64() {
-    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
     let groom = Groom::wavy(60, 12, 1, material());
-    let picture = stage.hair(&[&groom]);
-    let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
+    let picture = screen.hair(&[&groom]);
+    let exact = reference::exact(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen));
     let difference = picture.difference(&exact);
     eprintln!("60 strands, k = 16: {difference:?}, {:?}", picture.counters);
     assert!(exact.iter().any(|pixel| pixel.w > 0.5), "the groom is in the picture");
@@ -33,16 +37,19 @@ fn few_strands_are_as_in_f64() {
 
 #[test]
 fn fragments_and_pixels_are_counted_as_in_f64() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
+    let Some(mut screen) = screen(|_| ()) else { return };
     let groom = Groom::wavy(300, 16, 2, material());
-    let counters = stage.hair(&[&groom]).counters;
-    let (frame, section) = (stage.frame(), groom.reference());
+    let counters = screen.hair(&[&groom]).counters;
+    let section = groom.reference();
     let colors = vec![DVec4::ONE * 0.7; groom.positions.len()];
     let mut pixels = std::collections::HashSet::new();
     let mut fragments = 0u32;
-    let opaque = Material { opacity: 0.7, tip_opacity: 0.7, ..groom.material };
-    let same = stage.hair(&[&Groom { material: opaque, ..groom.clone() }]).counters;
-    reference::fill(&frame, &section, &colors, &nothing(&stage), &mut |fragment| {
+    let opaque = groom.material.with(|m| {
+        m.opacity = 0.7;
+        m.tip_opacity = 0.7;
+    });
+    let same = screen.hair(&[&Groom { material: opaque, ..groom.clone() }]).counters;
+    reference::fill(&screen.view, &section, &colors, &nothing(&screen), &mut |fragment| {
         pixels.insert(fragment.pixel);
         fragments += 1;
     });
@@ -57,12 +64,11 @@ fn fragments_and_pixels_are_counted_as_in_f64() {
 
 #[test]
 fn what_lies_behind_the_sorted_ones_has_its_true_opacity() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
+    let Some(mut screen) = screen(|_| ()) else { return };
     let groom = Groom::wavy(1500, 16, 3, material());
-    let picture = stage.hair(&[&groom]);
-    let (frame, section) = (stage.frame(), groom.reference());
-    let exact = reference::exact(&frame, &[section], &nothing(&stage));
-    let as_k = reference::resolved(&frame, &[section], &nothing(&stage), 8);
+    let picture = screen.hair(&[&groom]);
+    let exact = screen.exact(&[&groom]);
+    let as_k = reference::resolved(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen), 8);
     let (to_exact, to_k) = (picture.difference(&exact), picture.difference(&as_k));
     let depth = f64::from(picture.counters.fragments) / f64::from(picture.counters.pixels_with_hair);
     eprintln!("{depth:.1} fragments a pixel, k = 8: to exact {to_exact:?}, to the same k in f64 {to_k:?}");
@@ -74,12 +80,12 @@ fn what_lies_behind_the_sorted_ones_has_its_true_opacity() {
 
 #[test]
 fn more_sorted_fragments_come_closer_to_the_exact_picture() {
-    let groom = Groom::wavy(1500, 16, 4, Material { variation: 1.0, ..material() });
+    let groom = Groom::wavy(1500, 16, 4, material().with(|m| m.variation = 1.0));
     let mut psnr = Vec::new();
     for k in [1, 4, 8, 16] {
-        let Some(mut stage) = stage(|desc, _| desc.k = k) else { return };
-        let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
-        psnr.push(stage.hair(&[&groom]).difference(&exact).psnr);
+        let Some(mut screen) = screen(|setup| setup.technique.k = k) else { return };
+        let exact = reference::exact(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen));
+        psnr.push(screen.hair(&[&groom]).difference(&exact).psnr);
     }
     eprintln!("PSNR against exact order for k = 1, 4, 8, 16: {psnr:.1?}");
     assert!(psnr.is_sorted(), "{psnr:?}");
@@ -88,22 +94,22 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
 
 #[test]
 fn the_supersampled_truth_is_near() {
-    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
-    let groom = Groom::wavy(200, 16, 5, Material { fibre_radius: Some(0.003), ..material() });
-    let truth = reference::supersampled(&stage.frame(), &[groom.reference()], 8);
-    let difference = stage.hair(&[&groom]).difference(&truth);
+    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let groom = Groom::wavy(200, 16, 5, material().with(|m| m.fibre_radius = Some(0.003)));
+    let truth = reference::supersampled(&screen.view, &screen.lights, &[groom.reference()], 8);
+    let difference = screen.hair(&[&groom]).difference(&truth);
     eprintln!("against 64 samples a pixel: {difference:?}");
     assert!(difference.psnr > 32.0, "{difference:?}");
 }
 
 #[test]
 fn twice_the_same_picture_to_the_bit() {
-    let Some(mut stage) = stage(|_, view| view.size = [320, 200]) else { return };
+    let Some(mut screen) = screen(|setup| setup.size = [320, 200]) else { return };
     let groom = Groom::wavy(6000, 16, 6, material());
-    let first = stage.hair(&[&groom]);
+    let first = screen.hair(&[&groom]);
     assert!(first.counters.fragments > 1_000_000, "many threads race: {:?}", first.counters);
     for _ in 0..4 {
-        let again = stage.hair(&[&groom]);
+        let again = screen.hair(&[&groom]);
         assert_eq!(first.counters, again.counters);
         assert!(first.bytes == again.bytes, "{:?}", Difference::between(&first.pixels(), &again.pixels()));
     }
@@ -111,13 +117,17 @@ fn twice_the_same_picture_to_the_bit() {
 
 #[test]
 fn sections_are_sorted_against_each_other() {
-    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
-    let blue = Material { base_color: [0.05, 0.1, 0.8], tip_color: [0.05, 0.1, 0.8], ..material() };
+    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let blue = material().with(|m| {
+        m.base_color = glam::Vec3::new(0.05, 0.1, 0.8);
+        m.tip_color = glam::Vec3::new(0.05, 0.1, 0.8);
+    });
     let (one, other) = (Groom::wavy(60, 12, 7, material()), Groom::wavy(40, 20, 8, blue));
-    let picture = stage.hair(&[&one, &other]);
-    let swapped = stage.hair(&[&other, &one]);
+    let picture = screen.hair(&[&one, &other]);
+    let swapped = screen.hair(&[&other, &one]);
     assert!(picture.bytes == swapped.bytes, "the order of the sections is no order of depth");
-    let exact = reference::exact(&stage.frame(), &[one.reference(), other.reference()], &nothing(&stage));
+    let exact =
+        reference::exact(&screen.view, &screen.lights, &[one.reference(), other.reference()], &nothing(&screen));
     let difference = picture.difference(&exact);
     eprintln!("two sections: {difference:?}");
     assert!(difference.max < 0.004, "{difference:?}");
@@ -125,17 +135,18 @@ fn sections_are_sorted_against_each_other() {
 
 #[test]
 fn a_pose_moves_the_hair_with_its_light() {
-    let Some(mut stage) = stage(|desc, _| desc.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
     let rotation = glam::Quat::from_rotation_y(0.8) * glam::Quat::from_rotation_x(0.3);
     let pose = Pose { rotation, translation: glam::Vec3::new(0.1, -0.1, 0.2) };
     let groom = Groom { pose, ..Groom::wavy(60, 12, 9, material()) };
-    let exact = reference::exact(&stage.frame(), &[groom.reference()], &nothing(&stage));
-    let difference = stage.hair(&[&groom]).difference(&exact);
+    let exact = reference::exact(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen));
+    let difference = screen.hair(&[&groom]).difference(&exact);
     assert!(difference.max < 0.004, "{difference:?}");
     let still = reference::exact(
-        &stage.frame(),
+        &screen.view,
+        &screen.lights,
         &[Groom { pose: Pose::IDENTITY, ..groom.clone() }.reference()],
-        &nothing(&stage),
+        &nothing(&screen),
     );
     assert!(Difference::between(&exact, &still).psnr < 30.0, "the pose is seen");
 }

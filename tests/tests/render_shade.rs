@@ -3,35 +3,36 @@
 mod support;
 
 use glam::{DVec4, Quat, Vec3};
-use tressfx_conformance::render::{Groom, Stage};
+use tressfx_conformance::render::{Groom, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
-use tressfx_render::{Highlight, Light, LightPlace, Material, SectionDraw, reference};
+use tressfx_render::{Highlight, Light, LightPlace, Material, SectionDraw, ViewDraw, reference};
 
-use support::stage;
+use support::screen;
 
 /// Colours as the kernel leaves them, in the order of the buffers.
-fn shaded(stage: &mut Stage, groom: &Groom) -> Vec<DVec4> {
+fn shaded(screen: &mut Screen, groom: &Groom) -> Vec<DVec4> {
     let mut list = PassList::new();
-    let section = stage.section(&mut list, groom);
-    let draw = SectionDraw { section: &section, material: &groom.material, pose: groom.pose };
-    stage.renderer.draw(&mut list, &stage.view, &stage.lights, &stage.targets(), &[draw]);
+    let section = screen.section(&mut list, groom);
+    let draw = SectionDraw::new(&section, &groom.material, groom.pose);
+    let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+    screen.renderer.draw(&mut list, &[view], &[draw]).unwrap();
     let ticket = list.read_buffer(section.colors(), 0, 8 * groom.positions.len() as u64);
-    let bytes = run_and_read(&mut *stage.backend, &list, ticket);
+    let bytes = run_and_read(&mut *screen.backend, &list, ticket);
     let channel = |i: usize| half::f16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]).to_f64();
     (0..groom.positions.len()).map(|i| DVec4::from_array([0, 1, 2, 3].map(|c| channel(4 * i + c)))).collect()
 }
 
 /// The largest difference, as a share of the colour where that is above 1.
-fn error(stage: &mut Stage, groom: &Groom) -> f64 {
-    let colors = shaded(stage, groom);
-    let (frame, section) = (stage.frame(), groom.reference());
-    let strands = groom.shape.strands();
+fn error(screen: &mut Screen, groom: &Groom) -> f64 {
+    let colors = shaded(screen, groom);
+    let (view, lights, strands) = (screen.view, screen.lights.clone(), groom.reference());
+    let count = groom.shape.strands();
     let mut worst = 0.0f64;
     for (i, color) in colors.iter().enumerate() {
-        let (strand, vertex) = (i as u32 % strands, i as u32 / strands);
-        let expected = reference::shade(&frame, &section, strand, vertex);
+        let (strand, vertex) = (i as u32 % count, i as u32 / count);
+        let expected = reference::shade(&view, &lights, &strands, strand, vertex);
         assert!(expected.max_element() > 0.0, "lit");
         worst = worst.max(((*color - expected).abs() / expected.max(DVec4::ONE)).max_element());
     }
@@ -40,15 +41,22 @@ fn error(stage: &mut Stage, groom: &Groom) -> f64 {
 
 #[test]
 fn every_vertex_is_as_in_f64() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
+    let Some(mut screen) = screen(|_| ()) else { return };
     let place = LightPlace::Point { position: Vec3::new(0.4, 0.3, 0.8), reach: 0.7 };
-    stage.lights.lights.push(Light { place, color: Vec3::new(2.0, 1.0, 0.5) });
+    screen.lights.lights.push(Light { place, color: Vec3::new(2.0, 1.0, 0.5) });
     let sharp = Highlight { strength: 1.0, exponent: 200.0 };
-    let materials = [Material::default(), Material { primary: sharp, tilt: -8.0, form: 0.0, ..Material::default() }];
+    let materials = [
+        Material::default(),
+        Material::default().with(|m| {
+            m.primary = sharp;
+            m.tilt = -8.0;
+            m.self_shadow = 0.0;
+        }),
+    ];
     for material in materials {
         let pose = Pose { rotation: Quat::from_rotation_z(0.4), translation: Vec3::new(0.1, 0.2, -0.3) };
         let groom = Groom { pose, ..Groom::wavy(500, 16, 1, material) };
-        let error = error(&mut stage, &groom);
+        let error = error(&mut screen, &groom);
         eprintln!("8000 vertices: largest error {error:.2e}");
         // Half floats have 11 bits.
         assert!(error < 6e-4, "{error}");
@@ -57,24 +65,24 @@ fn every_vertex_is_as_in_f64() {
 
 #[test]
 fn a_fibre_along_the_light_or_the_view_is_finite() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
-    stage.lights.lights = vec![Light::directional(Vec3::Z, Vec3::ONE), Light::directional(Vec3::Y, Vec3::ONE)];
+    let Some(mut screen) = screen(|_| ()) else { return };
+    screen.lights.lights = vec![Light::directional(Vec3::Z, Vec3::ONE), Light::directional(Vec3::Y, Vec3::ONE)];
     // Towards the light, towards the eye, and both at a length that is not quite 1 in f32.
     let directions = [Vec3::Y, Vec3::Z, Vec3::new(0.0, 0.6, 0.8), Vec3::splat(1.0)];
     let strands: Vec<Vec<Vec3>> = directions.iter().map(|&d| (0..4).map(|i| d * 0.1 * i as f32).collect()).collect();
     let mut groom = Groom::new(&strands, Material::default());
     groom.tangents.iter_mut().for_each(|tangent| *tangent = tangent.map(|x| x * 1.000_000_2));
-    for color in shaded(&mut stage, &groom) {
+    for color in shaded(&mut screen, &groom) {
         assert!(color.is_finite() && color.min_element() >= 0.0, "{color}");
     }
 }
 
 #[test]
 fn more_light_than_a_half_float_holds_is_clamped() {
-    let Some(mut stage) = stage(|_, _| ()) else { return };
-    stage.lights.sky = Vec3::splat(1e9);
-    stage.lights.ground = Vec3::splat(1e9);
+    let Some(mut screen) = screen(|_| ()) else { return };
+    screen.lights.sky = Vec3::splat(1e9);
+    screen.lights.ground = Vec3::splat(1e9);
     let groom = Groom::wavy(20, 8, 2, Material::default());
-    let brightest = shaded(&mut stage, &groom).iter().map(|c| c.x).fold(0.0, f64::max);
+    let brightest = shaded(&mut screen, &groom).iter().map(|c| c.x).fold(0.0, f64::max);
     assert!((59_000.0..61_000.0).contains(&brightest), "{brightest}");
 }

@@ -1,17 +1,17 @@
 // The colour of each strand vertex. Shading in the space of the strands costs what the strands cost, however many pixels
 // they cover and however often.
 
-import package::frame::{Frame, ambient, towards};
 import package::grid::{GROUP, thread_index};
 import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
-import package::section::{Section, strand_random};
+import package::section::{SectionUniform, strand_random};
+import package::view::{ViewUniform, ambient, towards, towards_eye};
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<uniform> section: Section;
+@group(0) @binding(0) var<uniform> view: ViewUniform;
+@group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> tangents: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> openness: array<vec4<f32>>;
+@group(0) @binding(4) var<storage, read> visibility: array<vec4<f32>>;
 // Colour and opacity as four half floats.
 @group(0) @binding(5) var<storage, read_write> colors: array<vec2<u32>>;
 
@@ -26,9 +26,9 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-20));
 }
 
-// Where light comes from through the groom: a vector and a constant, from the frame of the strand. See `openness.rs`.
-fn open_towards(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
-    let local = openness[i / section.strands * section.guides + strand % section.guides];
+// Where light comes from through the groom: a vector and a constant, from the frame of the strand. See `visibility.rs`.
+fn visible_light(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
+    let local = visibility[i / section.strands * section.guides + strand % section.guides];
     let growth = unit(posed(strand + section.strands) - posed(strand));
     // Where a strand grows straight on, there is no direction across: it fades.
     let side = growth - tangent * dot(growth, tangent);
@@ -37,13 +37,13 @@ fn open_towards(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
 }
 
 fn lit(point: vec3<f32>, fibre: Fibre, open: vec4<f32>) -> vec3<f32> {
-    let eye = unit(frame.eye.xyz - point);
-    let around = mix(1.0, saturate(open.w), section.form);
-    var sum = around * ambient(frame.sky, frame.ground, unit(open.xyz)) * fibre.albedo;
-    for (var i = 0u; i < frame.light_count; i++) {
-        let light = towards(frame.lights[i], point);
-        let arriving = light.w * mix(1.0, saturate(open.w + dot(open.xyz, light.xyz)), section.form);
-        sum += frame.lights[i].color.rgb * arriving * scatter(fibre, eye, light.xyz);
+    let eye = unit(towards_eye(view.eye, point));
+    let around = mix(1.0, saturate(open.w), section.self_shadow);
+    var sum = around * ambient(view.sky, view.ground, unit(open.xyz)) * fibre.albedo;
+    for (var i = 0u; i < view.light_count; i++) {
+        let light = towards(view.lights[i], point);
+        let arriving = light.w * mix(1.0, saturate(open.w + dot(open.xyz, light.xyz)), section.self_shadow);
+        sum += view.lights[i].color.rgb * arriving * scatter(fibre, eye, light.xyz);
     }
     return sum;
 }
@@ -65,7 +65,7 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    var color = clamp(skin * lit(point, fibre, open_towards(i, strand, tangent)), vec3(0.0), vec3(BRIGHTEST));
+    var color = clamp(skin * lit(point, fibre, visible_light(i, strand, tangent)), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);
     }

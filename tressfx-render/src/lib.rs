@@ -1,9 +1,9 @@
-//! Rendering of hair: an A-buffer of fragments that compute kernels fill from strands and resolve into a picture.
+//! Rendering of hair: compute kernels shade strands, walk them over the pixels of a view, and put what they leave there in
+//! order.
 //!
 //! ```text
-//! hair.render.scene      raster   opaque meshes and the backdrop: colour and depth             ScenePass
-//! hair.render.shade      compute  one thread a strand vertex: its colour                       HairRenderer
-//! hair.render.fill       compute  one thread a strand segment: fragments into lists of pixels
+//! hair.render.shade      compute  one thread a strand vertex: its colour, seen from a view     HairRenderer
+//! hair.render.fill       compute  one thread a strand segment: fragments into lists of pixels  Technique::Ppll
 //! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up
 //! hair.render.composite  raster   tiles with hair: over the caller's picture
 //! ```
@@ -13,26 +13,26 @@
 
 #![forbid(unsafe_code)]
 
-mod composite;
-mod fill;
-pub mod gpu;
+mod bound;
 mod lights;
 mod material;
-mod openness;
-mod pool;
+mod ppll;
 mod predict;
 pub mod reference;
 mod renderer;
-mod resolve;
-mod scene;
-mod section;
 mod shade;
 mod shaders;
+mod strands;
+mod technique;
+pub mod uniforms;
+mod views;
+mod visibility;
 
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use pool::Counters;
-pub use renderer::{HairRenderer, RenderDesc, Targets};
-pub use resolve::{K_RANGE, TILE};
-pub use scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface};
-pub use section::{Section, SectionDraw, StrandInfo};
+pub use ppll::{Counters, K_RANGE, PpllDesc, TILE};
+pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
+pub use shaders::VIEW_MODULE;
+pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
+pub use technique::Technique;
+pub use views::{MAX_VIEWS, ViewDraw};

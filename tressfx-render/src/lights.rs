@@ -10,12 +10,12 @@ pub const MAX_LIGHTS: usize = 8;
 pub enum LightPlace {
     /// Infinitely far.
     Directional {
-        /// The direction towards the light, of any length but 0.
+        /// The direction in the world towards the light, of any length but 0.
         towards: Vec3,
     },
     /// At a point.
     Point {
-        /// The point, in the space of the view.
+        /// The point in the world.
         position: Vec3,
         /// Up to this distance the light has its full colour; beyond it falls with the square of the distance.
         reach: f32,
@@ -38,8 +38,8 @@ impl Light {
     }
 }
 
-/// All light of a frame.
-#[derive(Clone, Debug, PartialEq)]
+/// All light of a view; none by default.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lights {
     /// Light from above, linear RGB.
     pub sky: Vec3,
@@ -47,20 +47,4 @@ pub struct Lights {
     pub ground: Vec3,
     /// Single lights, at most [`MAX_LIGHTS`].
     pub lights: Vec<Light>,
-}
-
-impl Default for Lights {
-    /// A portrait studio for a subject that faces +z: a warm key light from the upper right, a cool fill from the left, and a
-    /// light from behind that draws the outline.
-    fn default() -> Self {
-        Self {
-            sky: Vec3::new(0.22, 0.24, 0.28),
-            ground: Vec3::new(0.09, 0.08, 0.07),
-            lights: vec![
-                Light::directional(Vec3::new(0.75, 0.8, 0.75), Vec3::new(2.3, 2.1, 1.85)),
-                Light::directional(Vec3::new(-0.9, 0.25, 0.6), Vec3::new(0.35, 0.42, 0.55)),
-                Light::directional(Vec3::new(-0.45, 0.65, -0.9), Vec3::new(1.1, 1.2, 1.4)),
-            ],
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// A highlight of a fibre.
@@ -17,6 +18,7 @@ pub struct Highlight {
 /// How the hair of a section looks. Lengths are in metres, colours linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Material {
     /// Radius of a fibre. Human hair has 0.00002 to 0.00006; more where one strand stands for many. None fits it to the
     /// groom: see [`StrandInfo::fitting_radius`](crate::StrandInfo::fitting_radius).
@@ -28,9 +30,9 @@ pub struct Material {
     /// Opacity of a fibre at the tip.
     pub tip_opacity: f32,
     /// Colour at the root.
-    pub base_color: [f32; 3],
+    pub base_color: Vec3,
     /// Colour at the tip; in between it changes evenly.
-    pub tip_color: [f32; 3],
+    pub tip_color: Vec3,
     /// How much the brightness differs from strand to strand.
     pub variation: f32,
     /// Share of light that is scattered in all directions around the fibre (Kajiya and Kay).
@@ -45,7 +47,7 @@ pub struct Material {
     pub tilt_variation: f32,
     /// How much of the shadow that the groom casts on itself in its rest pose is seen: 0 lights every strand as if it were
     /// alone.
-    pub form: f32,
+    pub self_shadow: f32,
     /// How much darker hair is at its root, where little light gets to.
     pub root_shade: f32,
     /// Share of a strand's length, from the root, over which that darkness fades.
@@ -60,15 +62,15 @@ impl Default for Material {
             tip_width: 0.15,
             opacity: 0.9,
             tip_opacity: 0.8,
-            base_color: [0.105, 0.048, 0.024],
-            tip_color: [0.20, 0.10, 0.05],
+            base_color: Vec3::new(0.105, 0.048, 0.024),
+            tip_color: Vec3::new(0.20, 0.10, 0.05),
             variation: 0.35,
             diffuse: 0.42,
             primary: Highlight { strength: 0.15, exponent: 90.0 },
             secondary: Highlight { strength: 1.6, exponent: 20.0 },
             tilt: 4.0,
             tilt_variation: 0.5,
-            form: 1.0,
+            self_shadow: 1.0,
             root_shade: 0.35,
             root_extent: 0.2,
         }
@@ -88,12 +90,19 @@ pub struct MaterialError {
 }
 
 impl Material {
+    /// The same material but for what `change` sets.
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
+        change(&mut self);
+        self
+    }
+
     /// Checks that every parameter is in its range.
     ///
     /// # Errors
     /// The first that is not, or is NaN.
     pub fn validate(&self) -> Result<(), MaterialError> {
-        let color = |color: [f32; 3]| color.into_iter().find(|c| !(0.0..=1.0).contains(c)).unwrap_or(0.0);
+        let color = |color: Vec3| color.to_array().into_iter().find(|c| !(0.0..=1.0).contains(c)).unwrap_or(0.0);
         let checks = [
             ("fibre_radius", self.fibre_radius.unwrap_or(0.01), 1e-6..=0.01),
             ("tip_width", self.tip_width, 0.0..=1.0),
@@ -109,7 +118,7 @@ impl Material {
             ("secondary.exponent", self.secondary.exponent, 1.0..=1000.0),
             ("tilt", self.tilt, -30.0..=30.0),
             ("tilt_variation", self.tilt_variation, 0.0..=1.0),
-            ("form", self.form, 0.0..=1.0),
+            ("self_shadow", self.self_shadow, 0.0..=1.0),
             ("root_shade", self.root_shade, 0.0..=1.0),
             ("root_extent", self.root_extent, 0.001..=1.0),
         ];
@@ -129,7 +138,7 @@ mod tests {
         Material::default().validate().unwrap();
         let error = Material { opacity: 1.5, ..Material::default() }.validate().unwrap_err();
         assert_eq!(error.to_string(), "material: opacity is 1.5, it must be from 0 to 1");
-        let error = Material { base_color: [0.1, -0.2, 0.3], ..Material::default() }.validate().unwrap_err();
+        let error = Material { base_color: Vec3::new(0.1, -0.2, 0.3), ..Material::default() }.validate().unwrap_err();
         assert_eq!((error.parameter, error.value), ("base_color", -0.2));
         assert!(Material { tilt: f32::NAN, ..Material::default() }.validate().is_err());
     }

@@ -1,39 +1,39 @@
 //! The kernels in f64, on the CPU, and the picture that they approximate.
 //!
-//! Functions have the names of the kernels and take what the kernels are given: [`gpu::Frame`] and the contents of the
-//! buffers, in their order. Nothing is rounded to half floats or to integers, except that a fragment too faint for the 16
+//! Functions have the names of the kernels and take the view and the contents of the buffers, in their order. Nothing is rounded to half floats or to integers, except that a fragment too faint for the 16
 //! bits of its alpha does not exist here either.
 
 mod fill;
 mod image;
+mod projection;
 mod resolve;
 mod shade;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::gpu;
+use crate::uniforms::SectionUniform;
 
 pub use fill::{Fragment, coverage, fill};
 pub use image::{exact, resolved, supersampled};
 pub use resolve::resolve;
 pub use shade::shade;
 
-/// A section on the CPU: what its buffers hold.
+/// The strands of a section on the CPU: what its buffers hold.
 #[derive(Clone, Copy, Debug)]
-pub struct Section<'a> {
+pub struct Strands<'a> {
     /// Counts and material.
-    pub uniform: gpu::Section,
+    pub uniform: SectionUniform,
     /// As [`StrandBuffers::positions`](tressfx_core::strand_buffers::StrandBuffers::positions).
     pub positions: &'a [[f32; 4]],
     /// As [`StrandBuffers::tangents`](tressfx_core::strand_buffers::StrandBuffers::tangents).
     pub tangents: &'a [[f32; 4]],
-    /// As [`StrandInfo::openness`](crate::StrandInfo::openness).
-    pub openness: &'a [[f32; 4]],
+    /// As [`StrandInfo::visibility`](crate::StrandInfo::visibility).
+    pub visibility: &'a [[f32; 4]],
     /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
     pub thickness: &'a [f32],
 }
 
-impl Section<'_> {
+impl Strands<'_> {
     fn index(&self, strand: u32, vertex: u32) -> usize {
         (vertex * self.uniform.strands + strand) as usize
     }

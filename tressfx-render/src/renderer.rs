@@ -1,44 +1,50 @@
 //! The passes of hair in a frame.
 
-use tressfx_core::backend::{Backend, BufferDesc, Format};
-use tressfx_core::error::{Need, Result};
-use tressfx_core::id::{BufferId, TextureId};
+use tressfx_core::backend::{Backend, Format, Owner};
+use tressfx_core::error::{Error, Result};
+use tressfx_core::id::TextureId;
 use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::shader::{Kernel, RasterPipeline};
-use tressfx_core::view::View;
+use tressfx_core::view::{PoseError, View};
 
-use crate::lights::Lights;
-use crate::pool::{Counters, NodePool, Resolved};
-use crate::resolve::K_RANGE;
-use crate::section::SectionDraw;
-use crate::{composite, fill, gpu, predict, resolve, shade};
+use crate::lights::MAX_LIGHTS;
+use crate::ppll::Counters;
+use crate::predict;
+use crate::shade::Shade;
+use crate::strands::SectionDraw;
+use crate::technique::{Order, Technique};
+use crate::views::{MAX_VIEWS, ViewDraw, Views};
 
 /// Room in the pool beyond what was predicted or measured: the next frame moves.
 const HEADROOM: f64 = 1.25;
 
 /// A renderer to be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RenderDesc {
-    /// Width and height of the targets in pixels.
+    /// Width and height in pixels of the largest view.
     pub size: [u32; 2],
-    /// Format of the colour target.
+    /// Format of the colour targets.
     pub target: Format,
-    /// How many of the nearest fragments of a pixel are put in order exactly; the rest is blended without order. In
-    /// [`K_RANGE`].
-    pub k: u32,
-    /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
-    pub max_node_bytes: u64,
+    /// How hair in front of hair gets its order.
+    pub technique: Technique,
 }
 
 impl RenderDesc {
-    /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
+    /// Lists of fragments with their defaults.
     pub fn new(size: [u32; 2], target: Format) -> Self {
-        Self { size, target, k: 8, max_node_bytes: 256 << 20 }
+        Self { size, target, technique: Technique::default() }
+    }
+
+    /// The same with another technique.
+    #[must_use]
+    pub fn technique(self, technique: impl Into<Technique>) -> Self {
+        Self { technique: technique.into(), ..self }
     }
 }
 
 /// What is drawn to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Targets {
     /// The picture so far; hair is blended over it.
     pub color: TextureId,
@@ -47,21 +53,51 @@ pub struct Targets {
     pub depth: TextureId,
 }
 
-/// Draws hair: per-pixel lists of fragments, of which the nearest are sorted.
+impl Targets {
+    /// Two textures of one size.
+    pub fn new(color: TextureId, depth: TextureId) -> Self {
+        Self { color, depth }
+    }
+}
+
+/// Why hair is not drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DrawError {
+    /// More views than a frame can have.
+    #[error("hair.render: {0} views, a frame can have {MAX_VIEWS}")]
+    Views(usize),
+    /// More lights than a view can have.
+    #[error("hair.render: {0} lights, a view can have {MAX_LIGHTS}")]
+    Lights(usize),
+    /// A view is larger than what the renderer was made for.
+    #[error("hair.render: a view of {view:?} pixels, the renderer was made for {renderer:?}")]
+    Size {
+        /// The view's size.
+        view: [u32; 2],
+        /// The renderer's.
+        renderer: [u32; 2],
+    },
+    /// A section is not where it can be.
+    #[error("hair.render: {0}")]
+    Pose(#[from] PoseError),
+    /// What the contract refuses.
+    #[error(transparent)]
+    Backend(#[from] Error),
+}
+
+/// Draws hair: strands are shaded for a view, walked over its pixels, and put in order by a [`Technique`].
 ///
 /// The same strands and view give the same picture to the bit, as long as no fragment is dropped: which of them finds room
 /// in a full pool is up to the GPU.
 #[derive(Debug)]
 pub struct HairRenderer {
     desc: RenderDesc,
-    shade: Kernel,
-    fill: Kernel,
-    resolve: Kernel,
-    composite: RasterPipeline,
-    /// [`gpu::Frame`].
-    frame: BufferId,
-    pool: NodePool,
-    resolved: Resolved,
+    views: Views,
+    shade: Shade,
+    order: Box<dyn Order>,
+    /// Of everything above.
+    owner: Owner,
 }
 
 impl HairRenderer {
@@ -71,20 +107,13 @@ impl HairRenderer {
     /// What the device lacks, or what the backend says.
     ///
     /// # Panics
-    /// If `k` is outside [`K_RANGE`] or a side of the size is 0.
+    /// If `k` is outside [`K_RANGE`](crate::K_RANGE).
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
-        assert!(K_RANGE.contains(&desc.k), "k is {}, it must be in {K_RANGE:?}", desc.k);
-        check(backend, desc.size)?;
-        Ok(Self {
-            desc: *desc,
-            shade: shade::kernel(backend)?,
-            fill: fill::kernel(backend)?,
-            resolve: resolve::kernel(backend, desc.k)?,
-            composite: composite::kernel(backend, desc.target)?,
-            frame: backend.create_buffer(&BufferDesc::uniform("hair.render.frame", size_of::<gpu::Frame>() as u64))?,
-            pool: NodePool::new(backend, desc.size, desc.max_node_bytes)?,
-            resolved: Resolved::new(backend, desc.size)?,
-        })
+        let ((order, views, shade), owner) = Owner::build(backend, |backend| {
+            let order = desc.technique.make(backend, desc.size, desc.target)?;
+            Ok::<_, Error>((order, Views::new(backend)?, Shade::new(backend)?))
+        })?;
+        Ok(Self { desc: *desc, views, shade, order, owner })
     }
 
     /// What it was made from.
@@ -94,94 +123,104 @@ impl HairRenderer {
 
     /// Fragments that there is room for at the moment.
     pub fn capacity(&self) -> u32 {
-        self.pool.capacity
+        self.order.capacity()
     }
 
-    /// Makes the buffers of the screen anew.
+    /// Makes the buffers of the screen anew, for views of at most this size. Lists that were written before stay sound.
     ///
     /// # Errors
     /// As [`HairRenderer::new`]. The renderer is as it was then.
-    ///
-    /// # Panics
-    /// If a side of the size is 0.
     pub fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        check(backend, size)?;
-        let pool = NodePool::new(backend, size, self.desc.max_node_bytes)?;
-        let resolved = Resolved::new(backend, size)?;
-        std::mem::replace(&mut self.pool, pool).destroy(backend);
-        std::mem::replace(&mut self.resolved, resolved).destroy(backend);
+        self.owner.change(backend, |backend| self.order.resize(backend, size))?;
         self.desc.size = size;
         Ok(())
     }
 
-    /// Makes room for what a frame is predicted to need. To be called before the first frame and after a cut of the camera.
+    /// Makes room for what a view is predicted to need. To be called before the first frame and after a cut of the camera,
+    /// for each view.
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size; the pool is as it was then.
     pub fn reserve(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
-        self.pool.grow(backend, (predict::fragments(view, draws) * HEADROOM) as u64)
+        if view.is_empty() {
+            return Ok(());
+        }
+        let wanted = (predict::fragments(view, draws) * HEADROOM) as u64;
+        self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
     }
 
-    /// Makes room for what a frame was found to need; nothing happens while there is enough.
+    /// Makes room for what a view was found to need; nothing happens while there is enough.
     ///
     /// # Errors
     /// As [`HairRenderer::reserve`].
     pub fn observe(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
-        if counters.fragments <= self.pool.capacity {
+        if counters.fragments <= self.capacity() {
             return Ok(());
         }
-        self.pool.grow(backend, (f64::from(counters.fragments) * HEADROOM) as u64)
+        let wanted = (f64::from(counters.fragments) * HEADROOM) as u64;
+        self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
     }
 
-    /// Draws sections, each once, sorted against each other. Where there is no strand, there is no pass.
+    /// Draws sections, each once in each view, sorted against each other. Where there is no strand or no pixel, there is no
+    /// pass.
+    ///
+    /// # Errors
+    /// [`DrawError`]; nothing is written then.
+    pub fn draw(
+        &mut self,
+        list: &mut PassList,
+        views: &[ViewDraw],
+        draws: &[SectionDraw],
+    ) -> std::result::Result<(), DrawError> {
+        self.check(views, draws)?;
+        let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
+        self.order.begin(list, views.len(), &draws);
+        self.shade.begin();
+        if draws.is_empty() || views.iter().all(|draw| draw.view.is_empty()) {
+            return Ok(());
+        }
+        self.views.upload(list, views);
+        draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        for (index, draw) in views.iter().enumerate().filter(|(_, draw)| !draw.view.is_empty()) {
+            let view = self.views.bound(index, draw.view);
+            for draw in &draws {
+                self.shade.pass(list, &view, draw.strands)?;
+            }
+            self.order.draw(list, &view, &draw.targets, &draws)?;
+        }
+        Ok(())
+    }
+
+    fn check(&self, views: &[ViewDraw], draws: &[SectionDraw]) -> std::result::Result<(), DrawError> {
+        if views.len() > MAX_VIEWS {
+            return Err(DrawError::Views(views.len()));
+        }
+        for draw in views {
+            if draw.lights.lights.len() > MAX_LIGHTS {
+                return Err(DrawError::Lights(draw.lights.lights.len()));
+            }
+            let (view, renderer) = (draw.view.size(), self.desc.size);
+            if !draw.view.is_empty() && (view[0] > renderer[0] || view[1] > renderer[1]) {
+                return Err(DrawError::Size { view, renderer });
+            }
+        }
+        draws.iter().try_for_each(|draw| draw.pose.validate())?;
+        Ok(())
+    }
+
+    /// Brings the counters of a view of the frame so far back: see [`Counters::from_bytes`].
     ///
     /// # Panics
-    /// If the view has another size than the renderer, or there are more than [`MAX_LIGHTS`](crate::MAX_LIGHTS) lights.
-    pub fn draw(&self, list: &mut PassList, view: &View, lights: &Lights, targets: &Targets, draws: &[SectionDraw]) {
-        assert_eq!(view.size, self.desc.size, "a view of {:?} for a renderer of {:?}", view.size, self.desc.size);
-        self.pool.clear_counters(list);
-        if draws.iter().all(SectionDraw::is_empty) {
-            return;
-        }
-        list.upload(self.frame, 0, &[gpu::Frame::new(view, lights, self.pool.capacity)]);
-        self.pool.clear(list);
-        for draw in draws {
-            list.upload(draw.section.uniform, 0, &[draw.uniform()]);
-            shade::pass(list, &self.shade, self.frame, draw.section);
-        }
-        for draw in draws {
-            fill::pass(list, &self.fill, self.frame, draw.section, &self.pool, targets.depth);
-        }
-        resolve::pass(list, &self.resolve, self.frame, &self.pool, &self.resolved);
-        composite::pass(list, &self.composite, self.frame, &self.resolved, targets.color);
-    }
-
-    /// Brings the counters of the frame so far back: see [`Counters::from_bytes`].
-    pub fn read_counters(&self, list: &mut PassList) -> Ticket {
-        list.read_buffer(self.pool.counters, 0, Counters::BYTES)
+    /// If a frame cannot have so many views.
+    pub fn read_counters(&self, list: &mut PassList, view: usize) -> Ticket {
+        let (buffer, offset) = self.order.counters(view);
+        list.read_buffer(buffer, offset, Counters::BYTES)
     }
 
     /// Frees everything that it made.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        for kernel in [self.shade, self.fill, self.resolve] {
-            backend.destroy_pipeline(kernel.pipeline);
-        }
-        backend.destroy_pipeline(self.composite.pipeline);
-        backend.destroy(self.frame.into());
-        self.pool.destroy(backend);
-        self.resolved.destroy(backend);
+        self.owner.destroy(backend);
     }
-}
-
-/// Whether a device can draw hair on a screen of this size.
-fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
-    assert!(size.iter().all(|&side| side > 0), "a size of {size:?}");
-    let needs = [
-        Need::StorageBuffers(6),
-        Need::TextureEdge(size[0].max(size[1])),
-        Need::StorageBindingBytes(8 * u64::from(size[0]) * u64::from(size[1])),
-    ];
-    backend.caps().check("hair.render", &needs)
 }
 
 #[cfg(test)]
@@ -189,33 +228,39 @@ mod tests {
     use tressfx_core::null::NullBackend;
 
     use super::*;
+    use crate::ppll::{K_RANGE, Ppll, PpllDesc};
+    use crate::uniforms::{LensUniform, LightUniform, SectionUniform, ViewUniform};
 
     #[test]
     fn structs_are_laid_out_as_in_the_wgsl() {
         let mut backend = NullBackend::default();
-        let renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
-        for kernel in [&renderer.shade, &renderer.fill, &renderer.resolve] {
-            kernel.shader.check_layout::<gpu::Frame>().unwrap();
+        let shade = Shade::new(&mut backend).unwrap();
+        let ppll = Ppll::new(&mut backend, &PpllDesc::default(), [64, 64], Format::Rgba16F).unwrap();
+        let [fill, resolve, composite] = ppll.shaders();
+        for shader in [&*shade.kernel.shader, fill, resolve, composite] {
+            shader.check_layout::<ViewUniform>().unwrap();
+            shader.check_layout::<LensUniform>().unwrap();
+            shader.check_layout::<LightUniform>().unwrap();
         }
-        renderer.composite.shader.check_layout::<gpu::Frame>().unwrap();
-        renderer.shade.shader.check_layout::<gpu::Light>().unwrap();
-        for kernel in [&renderer.shade, &renderer.fill] {
-            kernel.shader.check_layout::<gpu::Section>().unwrap();
+        for shader in [&*shade.kernel.shader, fill] {
+            shader.check_layout::<SectionUniform>().unwrap();
         }
-        for kernel in [&renderer.fill, &renderer.resolve] {
-            kernel.shader.check_layout::<Counters>().unwrap();
+        for shader in [fill, resolve] {
+            shader.check_layout::<Counters>().unwrap();
+            shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
         }
     }
 
     #[test]
     fn every_kernel_fits_the_limits_of_webgpu() {
         let mut backend = NullBackend::default();
+        let shade = Shade::new(&mut backend).unwrap();
         for k in K_RANGE {
-            let desc = RenderDesc { k, ..RenderDesc::new([64, 64], Format::Rgba8Srgb) };
-            let renderer = HairRenderer::new(&mut backend, &desc).unwrap();
-            assert_eq!(renderer.resolve.shader.features, format!("K={k}"));
-            let shaders = [&renderer.shade, &renderer.fill, &renderer.resolve].map(|kernel| &kernel.shader);
-            let counts = shaders.map(|shader| shader.storage_buffers());
+            let desc = PpllDesc { k, ..PpllDesc::default() };
+            let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
+            let [fill, resolve, composite] = ppll.shaders();
+            assert_eq!(resolve.features, format!("K={k}"));
+            let counts = [&*shade.kernel.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
     }

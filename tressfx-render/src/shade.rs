@@ -1,28 +1,46 @@
-//! `hair.render.shade`: the colour of each strand vertex.
+//! `hair.render.shade`: the colour of each strand vertex, seen from a view.
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::Kernel;
+use tressfx_core::shader::{Kernel, Specialization};
 
-use crate::section::Section;
-use crate::shaders::{GROUP, compute};
+use crate::bound::Bound;
+use crate::shaders::{GROUP, SHARED, compute};
+use crate::strands::ShadedStrands;
+use crate::views::BoundView;
 
-pub(crate) fn kernel(backend: &mut dyn Backend) -> Result<Kernel> {
-    compute(backend, "hair.render.shade", ("shade", include_str!("../shaders/shade.wgsl")))
+#[derive(Debug)]
+pub(crate) struct Shade {
+    pub(crate) kernel: Kernel,
+    /// By view and section.
+    bound: Bound<(usize, BufferId)>,
 }
 
-pub(crate) fn pass(list: &mut PassList, kernel: &Kernel, frame: BufferId, section: &Section) {
-    let bindings = kernel
-        .bind(&[
-            ("frame", frame.into()),
-            ("section", section.uniform.into()),
-            ("positions", section.buffers.positions.into()),
-            ("tangents", section.buffers.tangents.into()),
-            ("openness", section.openness.into()),
-            ("colors", section.colors.into()),
-        ])
-        .expect("the names of the kernel");
-    list.compute(kernel, &bindings, Grid::for_threads(section.buffers.shape.strand_vertices(), GROUP));
+impl Shade {
+    pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
+        let root = ("shade", include_str!("../shaders/shade.wgsl"));
+        let kernel = compute(backend, "hair.render.shade", root, &SHARED, &Specialization::new())?;
+        Ok(Self { kernel, bound: Bound::new() })
+    }
+
+    pub(crate) fn begin(&mut self) {
+        self.bound.begin_frame();
+    }
+
+    pub(crate) fn pass(&mut self, list: &mut PassList, view: &BoundView, strands: &ShadedStrands) -> Result<()> {
+        let bindings = self.bound.get((view.index, strands.colors), || {
+            self.kernel.bind(&[
+                ("view", view.uniform),
+                ("section", strands.uniform.into()),
+                ("positions", strands.buffers.positions.into()),
+                ("tangents", strands.buffers.tangents.into()),
+                ("visibility", strands.visibility.into()),
+                ("colors", strands.colors.into()),
+            ])
+        })?;
+        list.compute(&self.kernel, &bindings, Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP));
+        Ok(())
+    }
 }

@@ -2,41 +2,57 @@
 
 use std::sync::Arc;
 
-use tressfx_core::backend::{Backend, Blend, ComputeDesc, Depth, Format, RasterDesc};
+use tressfx_core::backend::{Backend, ComputeDesc};
 use tressfx_core::error::{Label, Result};
-use tressfx_core::shader::{Kernel, Module, RasterPipeline, Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Kernel, Module, Shader, ShaderSource, Specialization};
 
 /// Threads of a group of a kernel that walks a row of things: `package::grid::GROUP`.
 pub(crate) const GROUP: u32 = 64;
 
-/// What kernels import.
-const LIBRARY: &[Module] = &[
+/// What lights a surface: views and their lights, as [`ViewUniform`](crate::uniforms::ViewUniform) gives them to a shader.
+pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wgsl"));
+
+/// What all kernels may import. `walk` asks for a module `sink`, which is the technique's.
+pub(crate) const SHARED: [Module; 8] = [
+    VIEW_MODULE,
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
     ("fragment", include_str!("../shaders/shared/fragment.wgsl")),
-    ("frame", include_str!("../shaders/shared/frame.wgsl")),
     ("lighting", include_str!("../shaders/shared/lighting.wgsl")),
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
     ("section", include_str!("../shaders/shared/section.wgsl")),
+    ("strands", include_str!("../shaders/shared/strands.wgsl")),
+    ("walk", include_str!("../shaders/shared/walk.wgsl")),
 ];
 
+/// [`SHARED`] and the modules of a technique.
+pub(crate) const fn with_shared<const OWN: usize, const ALL: usize>(own: [Module; OWN]) -> [Module; ALL] {
+    assert!(ALL == OWN + SHARED.len());
+    let mut all = [("", ""); ALL];
+    let mut i = 0;
+    while i < ALL {
+        all[i] = if i < OWN { own[i] } else { SHARED[i - OWN] };
+        i += 1;
+    }
+    all
+}
+
 /// Composes a shader of this crate.
-pub(crate) fn shader(label: Label, root: Module, specialization: &Specialization) -> Result<Arc<Shader>> {
-    Shader::new(&ShaderSource { label, root, library: LIBRARY }, specialization).map(Arc::new)
+pub(crate) fn shader(
+    label: Label,
+    root: Module,
+    library: &'static [Module],
+    specialization: &Specialization,
+) -> Result<Arc<Shader>> {
+    Shader::new(&ShaderSource { label, root, library }, specialization).map(Arc::new)
 }
 
-/// Compiles a compute kernel that is not specialised.
-pub(crate) fn compute(backend: &mut dyn Backend, label: Label, root: Module) -> Result<Kernel> {
-    backend.create_compute(&ComputeDesc::new(shader(label, root, &Specialization::new())?))
-}
-
-/// Compiles a raster kernel that is not specialised.
-pub(crate) fn raster(
+/// Compiles a compute kernel of this crate.
+pub(crate) fn compute(
     backend: &mut dyn Backend,
     label: Label,
     root: Module,
-    target: (Format, Blend),
-    depth: Depth,
-) -> Result<RasterPipeline> {
-    let shader = shader(label, root, &Specialization::new())?;
-    backend.create_raster(&RasterDesc::new(shader).target(target.0, target.1).depth(depth))
+    library: &'static [Module],
+    specialization: &Specialization,
+) -> Result<Kernel> {
+    backend.create_compute(&ComputeDesc::new(shader(label, root, library, specialization)?))
 }

@@ -1,8 +1,9 @@
 //! Where the picture is taken from.
 
+use anyhow::Result;
 use glam::Vec3;
 use tressfx_core::strands::Bounds;
-use tressfx_core::view::View;
+use tressfx_core::view::{self, View};
 
 use crate::cli::numbers;
 
@@ -38,12 +39,14 @@ impl Camera {
     }
 
     /// The view of a groom with these vertices.
-    pub(crate) fn view(self, vertices: &[Vec3], size: [u32; 2]) -> View {
-        let around = View::around(vertices, size);
-        let Self::Given { eye, target, fov } = self else { return around };
-        let bounds = Bounds::of(vertices.iter().copied());
-        let reach = eye.distance(bounds.center()) + bounds.radius();
-        View { eye, target, fov, near: reach * 1e-3, far: reach * 10.0, ..around }
+    pub(crate) fn view(self, vertices: &[Vec3], size: [u32; 2]) -> Result<View> {
+        let mut camera = view::Camera::around(vertices, size);
+        if let Self::Given { eye, target, fov } = self {
+            let bounds = Bounds::of(vertices.iter().copied());
+            let reach = eye.distance(bounds.center()) + bounds.radius();
+            camera = view::Camera { eye, target, fov, near: reach * 1e-3, far: reach * 10.0, ..camera };
+        }
+        Ok(camera.view(size)?)
     }
 }
 

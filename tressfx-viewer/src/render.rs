@@ -25,7 +25,8 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         let last = frame + 1 == args.scene.frames;
         let start = Instant::now();
         let mut list = run.step(&args.scene)?;
-        let drawn = (draw_all || last).then(|| studio.draw(&mut list, run.head(&args.scene), run.sim.pose()));
+        let draw = draw_all || last;
+        let drawn = draw.then(|| studio.draw(&mut list, run.head(&args.scene), run.sim.pose())).transpose()?;
         let wanted = output.wants_every_frame() || last;
         let picture = wanted.then(|| list.read_texture(studio.targets.color));
         if args.scene.print_passes && last {

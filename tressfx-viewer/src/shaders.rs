@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use serde::Serialize;
-use tressfx_core::backend::{Caps, DepthOrder, Format};
+use tressfx_core::backend::{Caps, Format};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
-use tressfx_render::{HairRenderer, RenderDesc, ScenePass};
+use tressfx_render::{HairRenderer, PpllDesc, RenderDesc};
 use tressfx_sim::{HairSim, SectionDesc};
 
 use crate::cli;
@@ -122,8 +122,8 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone());
     let sections = [section.clone(), section.with_own_roots()];
     HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
-    HairRenderer::new(&mut backend, &RenderDesc { k: args.k, ..RenderDesc::new([64, 64], Format::Rgba16F) })?;
-    ScenePass::new(&mut backend, Format::Rgba16F, DepthOrder::Standard)?;
+    let technique = PpllDesc::default().k(args.k);
+    HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F).technique(technique))?;
     Ok(backend.shaders)
 }
 

@@ -6,9 +6,10 @@ use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Backdrop, Counters, HairRenderer, Lights, Material, MeshDraw, RenderDesc, SceneMesh, ScenePass, Section,
-    SectionDraw, StrandInfo, Surface, Targets,
+    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    ViewDraw,
 };
+use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
 use crate::run::Run;
@@ -26,16 +27,16 @@ pub(crate) struct Studio {
     lights: Lights,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
-    sections: Vec<(Section, Material)>,
+    sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
 }
 
 impl Studio {
     pub(crate) fn new(run: &mut Run, args: &Render, mesh: Option<Mesh>) -> Result<Self> {
-        let view = args.camera.view(&run.groom.rest(), args.size);
+        let view = args.camera.view(&run.groom.rest(), args.size)?;
         let backend = &mut *run.backend;
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
-        let targets = Targets { color: texture("picture", TARGET)?, depth: texture("depth", Format::Depth32F)? };
+        let targets = Targets::new(texture("picture", TARGET)?, texture("depth", Format::Depth32F)?);
         let mut uploads = PassList::new();
         let meshes = mesh
             .iter()
@@ -44,25 +45,27 @@ impl Studio {
             .collect::<Result<_, _>>()?;
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
-            let section = Section::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
+            let section = ShadedStrands::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
             sections.push((section, *run.params.material(index)));
         }
-        let mut renderer = HairRenderer::new(backend, &RenderDesc { k: args.k, ..RenderDesc::new(args.size, TARGET) })?;
+        let desc = RenderDesc::new(args.size, TARGET).technique(PpllDesc::default().k(args.k));
+        let mut renderer = HairRenderer::new(backend, &desc)?;
         renderer.reserve(backend, &view, &draws(&sections, run.sim.pose()))?;
-        let scene = ScenePass::new(backend, TARGET, view.depth)?;
+        let scene = ScenePass::new(backend, TARGET, view.depth())?;
         backend.run(&uploads)?;
-        let (lights, drawn) = (Lights::default(), RenderStats::default());
+        let (lights, drawn) = (studio_lights(), RenderStats::default());
         Ok(Self { targets, drawn, view, lights, scene, meshes, sections, renderer })
     }
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
-    pub(crate) fn draw(&self, list: &mut PassList, head: Pose, pose: Pose) -> Ticket {
+    pub(crate) fn draw(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Ticket> {
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
-        let Self { view, lights, targets, .. } = self;
-        self.scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes);
-        self.renderer.draw(list, view, lights, targets, &draws(&self.sections, pose));
-        self.renderer.read_counters(list)
+        let Self { view, lights, targets, scene, renderer, .. } = self;
+        scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes)?;
+        let view = ViewDraw::new(view, lights, *targets);
+        renderer.draw(list, &[view], &draws(&self.sections, pose))?;
+        Ok(self.renderer.read_counters(list, 0))
     }
 
     /// Reads the counters of the frame that was just drawn and makes room where there was too little. Says whether the
@@ -83,7 +86,7 @@ impl Studio {
     /// Draws the newest frame once more, and brings the picture.
     pub(crate) fn retake(&mut self, run: &mut Run, args: &cli::Scene) -> Result<Vec<u8>> {
         let mut list = PassList::new();
-        let counters = self.draw(&mut list, run.head(args), run.sim.pose());
+        let counters = self.draw(&mut list, run.head(args), run.sim.pose())?;
         let picture = list.read_texture(self.targets.color);
         run.submit(&list)?;
         self.take_stock(run, counters)?;
@@ -91,6 +94,6 @@ impl Studio {
     }
 }
 
-fn draws(sections: &[(Section, Material)], pose: Pose) -> Vec<SectionDraw<'_>> {
-    sections.iter().map(|(section, material)| SectionDraw { section, material, pose }).collect()
+fn draws(sections: &[(ShadedStrands, Material)], pose: Pose) -> Vec<SectionDraw<'_>> {
+    sections.iter().map(|(strands, material)| SectionDraw::new(strands, material, pose)).collect()
 }

@@ -4,13 +4,13 @@ use glam::{DVec3, EulerRot, Quat, Vec3};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
-use tressfx_render::{Material, reference as picture};
+use tressfx_render::Material;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{SectionInfo, Step};
 use tressfx_sim::{CapsuleMotion, SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
 
 use super::subject::Subject;
-use crate::render::{Groom, Stage};
+use crate::render::{Groom, Screen};
 use crate::sim::{Motion, Rig, random_strands, strand_errors, wide, worst};
 
 /// Of a strand's length, for one kernel.
@@ -182,14 +182,18 @@ pub(super) fn a_second_is_as_in_f64(t: &mut Subject) {
 }
 
 fn material() -> Material {
-    Material { fibre_radius: Some(0.005), opacity: 0.7, tip_opacity: 0.5, ..Material::default() }
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+    })
 }
 
 fn picture_of(t: &Subject, order: DepthOrder) {
-    let mut stage = Stage::new(t.another(), |desc, view| (desc.k, view.depth) = (16, order));
+    let mut screen = Screen::new(t.another(), |setup| (setup.technique.k, setup.camera.depth) = (16, order));
     let groom = Groom::wavy(60, 12, 1, material());
-    let exact = picture::exact(&stage.frame(), &[groom.reference()], &|_| order.far());
-    let difference = stage.hair(&[&groom]).difference(&exact);
+    let exact = screen.exact(&[&groom]);
+    let difference = screen.hair(&[&groom]).difference(&exact);
     assert!(exact.iter().any(|pixel| pixel.w > 0.5), "the groom is in the picture");
     assert!(difference.max < 0.005 && difference.psnr > 65.0, "{order:?}: {difference:?}");
 }
@@ -204,10 +208,10 @@ pub(super) fn a_picture_is_as_in_f64_in_reverse_order(t: &mut Subject) {
 
 pub(super) fn a_picture_is_the_same_twice_to_the_bit(t: &mut Subject) {
     let groom = Groom::wavy(300, 12, 2, material());
-    let mut stage = Stage::new(t.another(), |_, _| ());
-    let first = stage.hair(&[&groom]);
-    let mut other = Stage::new(t.another(), |_, _| ());
-    for again in [stage.hair(&[&groom]), other.hair(&[&groom])] {
+    let mut screen = Screen::new(t.another(), |_| ());
+    let first = screen.hair(&[&groom]);
+    let mut other = Screen::new(t.another(), |_| ());
+    for again in [screen.hair(&[&groom]), other.hair(&[&groom])] {
         assert_eq!(first.counters, again.counters);
         assert!(first.bytes == again.bytes);
     }

@@ -2,12 +2,10 @@
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use tressfx_backend_wgpu::WgpuBackend;
-use tressfx_conformance::render::Stage;
+use tressfx_conformance::render::{Screen, Setup};
 use tressfx_conformance::sim::Rig;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
-use tressfx_core::view::View;
-use tressfx_render::RenderDesc;
 use tressfx_sim::SimParams;
 
 /// A wgpu backend, or `None` where there is no adapter and `TRESSFX_NO_GPU` says that this is known.
@@ -28,8 +26,8 @@ pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
 }
 
 /// A screen on a [`gpu`].
-pub(crate) fn stage(change: impl FnOnce(&mut RenderDesc, &mut View)) -> Option<Stage> {
-    Some(Stage::new(gpu()?, change))
+pub(crate) fn screen(change: impl FnOnce(&mut Setup)) -> Option<Screen> {
+    Some(Screen::new(gpu()?, change))
 }
 
 /// A simulation of one section on a [`gpu`].

@@ -1,6 +1,8 @@
-// A segment of a strand on the screen: a strip between two points with a width, a distance and a colour at either end.
+// A segment of a strand on the screen: a strip between two points with a width and a nearness at either end.
 
-// In view space: position, x right, y up, -z ahead.
+import package::view::LensUniform;
+
+// In the space of the eye: x right, y up, -z ahead.
 struct End {
     point: vec3<f32>,
     radius: f32,
@@ -11,7 +13,7 @@ struct Ribbon {
     start: vec2<f32>,
     end: vec2<f32>,
     half_width: vec2<f32>,
-    // 1 / distance from the plane of the eye. It is linear on the screen, as half_width is.
+    // See the lens. It is linear on the screen, as half_width is.
     nearness: vec2<f32>,
     // Where the ends are on the segment that it was cut from, 0 to 1.
     part: vec2<f32>,
@@ -25,34 +27,55 @@ fn is_sound(point: vec3<f32>) -> bool {
     return all((bitcast<vec3<u32>>(point) & vec3(0x7fffffffu)) < vec3(LARGEST_BITS));
 }
 
-// Cuts off what is nearer than the near plane, and projects: `focal` is in pixels, `center` is where the eye looks.
-fn project(a: End, b: End, near: f32, focal: f32, center: vec2<f32>) -> Ribbon {
+// The pixel of a point whose 1 / w is `scale`.
+fn on_screen(lens: LensUniform, point: vec2<f32>, scale: f32) -> vec2<f32> {
+    let focal = lens.focal * scale;
+    return lens.center + vec2(focal.x * point.x, -(lens.skew * scale * point.x + focal.y * point.y));
+}
+
+// Pixels of half a unit of width at w 1, across a line on the screen.
+fn width_scale(lens: LensUniform, delta: vec2<f32>) -> f32 {
+    if lens.even_focal > 0.0 {
+        return lens.even_focal;
+    }
+    let normal = vec2(-delta.y, delta.x) * inverseSqrt(max(dot(delta, delta), 1e-20));
+    return length(vec2(lens.focal.x * normal.x - lens.skew * normal.y, lens.focal.y * normal.y));
+}
+
+// Cuts off what is nearer than the near plane, and projects.
+fn project(a: End, b: End, lens: LensUniform) -> Ribbon {
     var ribbon: Ribbon;
     let distances = vec2(-a.point.z, -b.point.z);
-    if max(distances.x, distances.y) <= near {
+    if max(distances.x, distances.y) <= lens.near {
         return ribbon;
     }
-    let crossing = saturate((near - distances.x) / (distances.y - distances.x));
-    let part = vec2(select(0.0, crossing, distances.x < near), select(1.0, crossing, distances.y < near));
-    let nearness = 1.0 / max(mix(distances.xx, distances.yy, part), vec2(near));
-    let scale = focal * nearness;
-    ribbon.start = center + mix(a.point.xy, b.point.xy, part.x) * vec2(scale.x, -scale.x);
-    ribbon.end = center + mix(a.point.xy, b.point.xy, part.y) * vec2(scale.y, -scale.y);
-    ribbon.half_width = mix(vec2(a.radius), vec2(b.radius), part) * scale;
-    ribbon.nearness = nearness;
+    let crossing = saturate((lens.near - distances.x) / (distances.y - distances.x));
+    let part = vec2(select(0.0, crossing, distances.x < lens.near), select(1.0, crossing, distances.y < lens.near));
+    let distance = max(mix(distances.xx, distances.yy, part), vec2(lens.near));
+    var scale = vec2(1.0);
+    if lens.is_perspective == 1u {
+        scale = 1.0 / distance;
+        ribbon.nearness = scale;
+    } else {
+        ribbon.nearness = 1.0 - lens.nearness_slope * distance;
+    }
+    ribbon.start = on_screen(lens, mix(a.point.xy, b.point.xy, part.x), scale.x);
+    ribbon.end = on_screen(lens, mix(a.point.xy, b.point.xy, part.y), scale.y);
+    let width = width_scale(lens, ribbon.end - ribbon.start);
+    ribbon.half_width = mix(vec2(a.radius), vec2(b.radius), part) * (width * scale);
     ribbon.part = part;
     ribbon.visible = true;
     return ribbon;
 }
 
 // Where on a segment, 0 to 1, its screen parameter `t` is, that is 0 and 1 at the ribbon's ends.
-fn along(ribbon: Ribbon, t: f32) -> f32 {
+fn along(ribbon: Ribbon, lens: LensUniform, t: f32) -> f32 {
     let true_part = t * ribbon.nearness.y / mix(ribbon.nearness.x, ribbon.nearness.y, t);
-    return mix(ribbon.part.x, ribbon.part.y, true_part);
+    return mix(ribbon.part.x, ribbon.part.y, select(t, true_part, lens.is_perspective == 1u));
 }
 
 // Cuts off what is further than `margin` outside the image, so that coordinates stay small.
-fn clip(ribbon: Ribbon, size: vec2<f32>, margin: f32) -> Ribbon {
+fn clip(ribbon: Ribbon, lens: LensUniform, size: vec2<f32>, margin: f32) -> Ribbon {
     let delta = ribbon.end - ribbon.start;
     let parallel = abs(delta) < vec2(1e-6);
     let step = select(delta, vec2(1.0), parallel);
@@ -68,6 +91,6 @@ fn clip(ribbon: Ribbon, size: vec2<f32>, margin: f32) -> Ribbon {
     cut.end = mix(ribbon.start, ribbon.end, t.y);
     cut.half_width = mix(ribbon.half_width.xx, ribbon.half_width.yy, t);
     cut.nearness = mix(ribbon.nearness.xx, ribbon.nearness.yy, t);
-    cut.part = vec2(along(ribbon, t.x), along(ribbon, t.y));
+    cut.part = vec2(along(ribbon, lens, t.x), along(ribbon, lens, t.y));
     return cut;
 }

@@ -1,6 +1,6 @@
 // What every kernel knows of the section that it draws: its counts and its material.
 
-struct Section {
+struct SectionUniform {
     pose: mat4x4<f32>,
     // Colour and opacity at the root and at the tip.
     base: vec4<f32>,
@@ -13,7 +13,7 @@ struct Section {
     tip_width: f32,
     diffuse: f32,
     variation: f32,
-    form: f32,
+    self_shadow: f32,
     // Strength and exponent of the highlights.
     primary: vec2<f32>,
     secondary: vec2<f32>,

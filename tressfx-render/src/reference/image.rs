@@ -1,46 +1,62 @@
 //! Whole pictures of hair, premultiplied, row by row from the top.
 
 use glam::{DVec3, DVec4};
+use tressfx_core::view::View;
 
-use super::{Fragment, Section, fill, resolve, shade};
-use crate::gpu::Frame;
+use super::fill::fill_projected;
+use super::projection::Projection;
+use super::{Fragment, Strands, resolve, shade};
+use crate::lights::Lights;
 
 /// The picture with every fragment kept and put in order.
-pub fn exact(frame: &Frame, sections: &[Section], scene: &dyn Fn([u32; 2]) -> f32) -> Vec<DVec4> {
-    resolved(frame, sections, scene, usize::MAX)
+pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([u32; 2]) -> f32) -> Vec<DVec4> {
+    resolved(view, lights, strands, scene, usize::MAX)
 }
 
 /// The picture with the `k` nearest fragments of a pixel in order.
-pub fn resolved(frame: &Frame, sections: &[Section], scene: &dyn Fn([u32; 2]) -> f32, k: usize) -> Vec<DVec4> {
-    let mut lists = lists(frame, sections, scene);
+pub fn resolved(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+    k: usize,
+) -> Vec<DVec4> {
+    let mut lists = lists(view, lights, strands, scene, 1);
     lists.iter_mut().map(|list| resolve(list, k)).collect()
 }
 
 /// The exact picture from `factor` x `factor` samples a pixel: what it converges to is the truth about which strand hides
 /// which within a pixel. There is no scene behind the hair.
-pub fn supersampled(frame: &Frame, sections: &[Section], factor: u32) -> Vec<DVec4> {
-    let size = frame.size;
-    let fine = Frame { size: size.map(|side| side * factor), focal: frame.focal * factor as f32, ..*frame };
-    let nothing = |_| frame.depth_offset;
-    let samples = exact(&fine, sections, &nothing);
-    let mut picture = vec![DVec4::ZERO; (size[0] * size[1]) as usize];
-    for (i, sample) in samples.iter().enumerate() {
-        let (x, y) = (i as u32 % fine.size[0], i as u32 / fine.size[0]);
-        picture[(y / factor * size[0] + x / factor) as usize] += *sample / f64::from(factor * factor);
+pub fn supersampled(view: &View, lights: &Lights, strands: &[Strands], factor: u32) -> Vec<DVec4> {
+    let far = view.depth().far();
+    let mut lists = lists(view, lights, strands, &|_| far, factor);
+    let width = view.size()[0];
+    let mut picture = vec![DVec4::ZERO; (width * view.size()[1]) as usize];
+    for (i, list) in lists.iter_mut().enumerate() {
+        let (x, y) = (i as u32 % (width * factor), i as u32 / (width * factor));
+        picture[(y / factor * width + x / factor) as usize] += resolve(list, usize::MAX) / f64::from(factor * factor);
     }
     picture
 }
 
-fn lists(frame: &Frame, sections: &[Section], scene: &dyn Fn([u32; 2]) -> f32) -> Vec<Vec<Fragment>> {
-    let mut lists = vec![Vec::new(); (frame.size[0] * frame.size[1]) as usize];
-    for section in sections {
-        let of = &section.uniform;
+fn lists(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+    factor: u32,
+) -> Vec<Vec<Fragment>> {
+    let projection = Projection::new(view).finer(factor);
+    let size = projection.size;
+    let mut lists = vec![Vec::new(); (size[0] * size[1]) as usize];
+    for strands in strands {
+        let of = &strands.uniform;
         let vertices = (0..of.vertices).flat_map(|vertex| (0..of.strands).map(move |strand| (strand, vertex)));
         let finite = |color: DVec4| if color.is_finite() { color } else { DVec3::ZERO.extend(color.w) };
         let colors: Vec<DVec4> =
-            vertices.map(|(strand, vertex)| finite(shade(frame, section, strand, vertex))).collect();
-        fill(frame, section, &colors, scene, &mut |fragment| {
-            lists[(fragment.pixel[1] * frame.size[0] + fragment.pixel[0]) as usize].push(fragment);
+            vertices.map(|(strand, vertex)| finite(shade(view, lights, strands, strand, vertex))).collect();
+        fill_projected(&projection, strands, &colors, scene, &mut |fragment| {
+            lists[(fragment.pixel[1] * size[0] + fragment.pixel[0]) as usize].push(fragment);
         });
     }
     lists

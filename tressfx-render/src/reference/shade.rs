@@ -2,18 +2,21 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::{Section, matrix, pair, xyz};
-use crate::gpu::{Frame, Light};
+use tressfx_core::view::View;
+
+use super::projection::Projection;
+use super::{Strands, matrix, pair, xyz};
+use crate::lights::{Light, LightPlace, Lights};
 
 /// Colour and opacity of a strand vertex.
-pub fn shade(frame: &Frame, section: &Section, strand: u32, vertex: u32) -> DVec4 {
-    let of = &section.uniform;
+pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, vertex: u32) -> DVec4 {
+    let of = &strands.uniform;
     let guide = strand % of.guides;
-    let index = section.index(strand, vertex);
+    let index = strands.index(strand, vertex);
     let along = f64::from(vertex) / f64::from(of.vertices - 1);
     let paint = DVec4::from_array(of.base.map(f64::from)).lerp(DVec4::from_array(of.tip.map(f64::from)), along);
     let fibre = Fibre {
-        tangent: matrix(&of.pose).transform_vector3(xyz(&section.tangents[index])),
+        tangent: matrix(&of.pose).transform_vector3(xyz(&strands.tangents[index])),
         tilt: f64::from(of.tilt) * (1.0 + f64::from(of.tilt_variation) * strand_random(strand, guide, 1)),
         albedo: paint.truncate() * (1.0 + f64::from(of.variation) * strand_random(strand, guide, 0)),
         diffuse: f64::from(of.diffuse),
@@ -21,9 +24,10 @@ pub fn shade(frame: &Frame, section: &Section, strand: u32, vertex: u32) -> DVec
         secondary: pair(of.secondary),
     };
     let skin = 1.0 - f64::from(of.root_shade) * (1.0 - smoothstep(along / f64::from(of.root_extent)));
-    let point = section.posed(index);
-    let open = open_towards(section, strand, vertex, fibre.tangent);
-    let color = skin * lit(frame, f64::from(of.form), point, &fibre, open);
+    let point = strands.posed(index);
+    let open = visible_light(strands, strand, vertex, fibre.tangent);
+    let eye = Projection::new(view).towards_eye(point);
+    let color = skin * lit(lights, f64::from(of.self_shadow), point, eye, &fibre, open);
     color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
 }
 
@@ -37,37 +41,36 @@ struct Fibre {
 }
 
 /// The light that comes through the groom, as a vector and a constant.
-fn open_towards(section: &Section, strand: u32, vertex: u32, tangent: DVec3) -> DVec4 {
-    let of = &section.uniform;
-    let local = section.openness[(vertex * of.guides + strand % of.guides) as usize].map(f64::from);
-    let growth = section.posed(section.index(strand, 1)) - section.posed(section.index(strand, 0));
+fn visible_light(strands: &Strands, strand: u32, vertex: u32, tangent: DVec3) -> DVec4 {
+    let of = &strands.uniform;
+    let local = strands.visibility[(vertex * of.guides + strand % of.guides) as usize].map(f64::from);
+    let growth = strands.posed(strands.index(strand, 1)) - strands.posed(strands.index(strand, 0));
     let growth = growth.normalize_or_zero();
     let side = growth - tangent * growth.dot(tangent);
     let across = side * side.length().recip().min(5.0);
     (local[0] * tangent + local[1] * across + local[2] * tangent.cross(across)).extend(local[3])
 }
 
-fn lit(frame: &Frame, form: f64, point: DVec3, fibre: &Fibre, open: DVec4) -> DVec3 {
-    let eye = (xyz(&frame.eye) - point).normalize_or_zero();
-    let seen = |open: f64| 1.0 + form * (open.clamp(0.0, 1.0) - 1.0);
+fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibre, open: DVec4) -> DVec3 {
+    let seen = |open: f64| 1.0 + self_shadow * (open.clamp(0.0, 1.0) - 1.0);
     let above = 0.5 + 0.5 * open.truncate().normalize_or_zero().y;
-    let ambient = seen(open.w) * xyz(&frame.ground).lerp(xyz(&frame.sky), above) * fibre.albedo;
-    let lights = &frame.lights[..frame.light_count as usize];
-    lights.iter().fold(ambient, |sum, light| {
+    let ambient = seen(open.w) * lights.ground.as_dvec3().lerp(lights.sky.as_dvec3(), above) * fibre.albedo;
+    lights.lights.iter().fold(ambient, |sum, light| {
         let (towards, arriving) = towards(light, point);
         let arriving = arriving * seen(open.w + open.truncate().dot(towards));
-        sum + xyz(&light.color) * arriving * scatter(fibre, eye, towards)
+        sum + light.color.as_dvec3() * arriving * scatter(fibre, eye, towards)
     })
 }
 
 fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
-    let place = xyz(&light.place);
-    if light.place[3] == 0.0 {
-        return (place, 1.0);
+    match light.place {
+        LightPlace::Directional { towards } => (towards.as_dvec3().normalize(), 1.0),
+        LightPlace::Point { position, reach } => {
+            let offset = position.as_dvec3() - point;
+            let reach = f64::from(reach);
+            (offset.normalize_or_zero(), (reach * reach / offset.length_squared()).min(1.0))
+        }
     }
-    let offset = place - point;
-    let reach = f64::from(light.color[3]);
-    (offset.normalize_or_zero(), (reach * reach / offset.length_squared()).min(1.0))
 }
 
 fn scatter(fibre: &Fibre, eye: DVec3, light: DVec3) -> DVec3 {

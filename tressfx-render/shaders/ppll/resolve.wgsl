@@ -4,17 +4,19 @@
 // are sorted under a total order, and sums of integers know no order.
 
 import package::constants::K;
-import package::fragment::{Counters, NOTHING, OPAQUE, node_alpha, node_color};
-import package::frame::Frame;
+import package::fragment::OPAQUE;
+import package::node::{Counters, NOTHING, PoolUniform, node_alpha, node_color};
+import package::view::ViewUniform;
 
-@group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<storage, read> heads: array<u32>;
-@group(0) @binding(2) var<storage, read> nodes: array<vec4<u32>>;
-@group(0) @binding(3) var<storage, read_write> counters: Counters;
+@group(0) @binding(0) var<uniform> view: ViewUniform;
+@group(0) @binding(1) var<uniform> pool: PoolUniform;
+@group(0) @binding(2) var<storage, read> heads: array<u32>;
+@group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read_write> counters: Counters;
 // Premultiplied colour and alpha as four half floats, a pixel.
-@group(0) @binding(4) var<storage, read_write> resolved: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read_write> resolved: array<vec2<u32>>;
 // Pixels with hair, a tile of 8 x 8.
-@group(0) @binding(5) var<storage, read_write> tiles: array<u32>;
+@group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
 
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
 // Sums stop here instead of starting again from zero: no summand is larger.
@@ -94,8 +96,8 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
         atomicStore(&hairy, 0u);
     }
     workgroupBarrier();
-    let inside = all(pixel.xy < frame.size);
-    let index = pixel.y * frame.size.x + pixel.x;
+    let inside = all(pixel.xy < view.size);
+    let index = pixel.y * view.size.x + pixel.x;
     var head = NOTHING;
     if inside {
         head = heads[index];
@@ -111,7 +113,8 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
     }
     if lane == 0u && all(group.xy == vec2(0u)) {
         let wanted = atomicLoad(&counters.fragments);
-        counters.dropped = max(wanted, frame.node_capacity) - frame.node_capacity;
+        counters.dropped = max(wanted, pool.capacity) - pool.capacity;
+        counters.saturated = u32(wanted >= pool.limit);
     }
     if inside && count > 0u {
         var color = vec4(0.0);

@@ -7,11 +7,11 @@ use tressfx_core::view::{Pose, View};
 
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::material::Material;
-use crate::section::StrandInfo;
+use crate::strands::StrandInfo;
 
 gpu_struct! {
     /// One light.
-    pub struct Light {
+    pub struct LightUniform {
         /// Unit direction towards it and 0, or its position and 1.
         pub place: [f32; 4],
         /// Colour, and the distance up to which a point light has it.
@@ -20,13 +20,41 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// The camera and the lights.
-    pub struct Frame {
-        /// World to view, columns.
-        pub view: [[f32; 4]; 4],
+    /// From where, and through which lens.
+    pub struct LensUniform {
+        /// World to the space of the eye, columns.
+        pub to_eye: [[f32; 4]; 4],
+        /// The pixel that the eye looks at.
+        pub center: [f32; 2],
+        /// Pixels of a unit length at distance 1, or at any in an orthographic view, to the right and up.
+        pub focal: [f32; 2],
+        /// Pixels by which a unit length to the right leads up.
+        pub skew: f32,
+        /// `focal` if it is the same in all directions, else 0.
+        pub even_focal: f32,
+        /// Distance of the near plane.
+        pub near: f32,
+        /// By how much the nearness falls with each unit of distance in an orthographic view.
+        pub nearness_slope: f32,
+        /// A depth `z` stands for the nearness `(z - depth_offset) * depth_scale`.
+        pub depth_offset: f32,
+        /// See `depth_offset`.
+        pub depth_scale: f32,
+        /// 1 in a perspective, else 0.
+        pub is_perspective: u32,
+        /// Nothing.
+        pub unused: u32,
+    }
+}
+
+gpu_struct! {
+    /// A view and its lights.
+    pub struct ViewUniform {
         /// World to clip, columns.
         pub view_projection: [[f32; 4]; 4],
-        /// Position of the eye.
+        /// The lens.
+        pub lens: LensUniform,
+        /// Position of the eye and 1, or the direction towards it and 0.
         pub eye: [f32; 4],
         /// Light from above.
         pub sky: [f32; 4],
@@ -34,26 +62,22 @@ gpu_struct! {
         pub ground: [f32; 4],
         /// Pixels across and down.
         pub size: [u32; 2],
-        /// Pixels of a unit length at distance 1.
-        pub focal: f32,
-        /// Distance of the near plane.
-        pub near: f32,
-        /// A depth `z` stands for the distance `w` with `1 / w = (z - depth_offset) * depth_scale`.
-        pub depth_offset: f32,
-        /// See `depth_offset`.
-        pub depth_scale: f32,
+        /// Where in the target they begin.
+        pub offset: [u32; 2],
+        /// Pixels of the target across and down.
+        pub target_size: [u32; 2],
         /// How many of `lights` there are.
         pub light_count: u32,
-        /// Fragments that the pool holds.
-        pub node_capacity: u32,
+        /// Nothing.
+        pub unused: u32,
         /// The lights.
-        pub lights: [Light; MAX_LIGHTS],
+        pub lights: [LightUniform; MAX_LIGHTS],
     }
 }
 
 gpu_struct! {
     /// Counts and material of a section.
-    pub struct Section {
+    pub struct SectionUniform {
         /// Where the section is moved to, columns.
         pub pose: [[f32; 4]; 4],
         /// Colour and opacity at the root.
@@ -75,7 +99,7 @@ gpu_struct! {
         /// Brightness that differs from strand to strand.
         pub variation: f32,
         /// How much the shadow of the groom on itself darkens.
-        pub form: f32,
+        pub self_shadow: f32,
         /// Strength and exponent of the white highlight.
         pub primary: [f32; 2],
         /// Strength and exponent of the coloured highlight.
@@ -95,7 +119,7 @@ fn with(v: Vec3, w: f32) -> [f32; 4] {
     v.extend(w).to_array()
 }
 
-impl From<&crate::Light> for Light {
+impl From<&crate::Light> for LightUniform {
     fn from(light: &crate::Light) -> Self {
         let (place, reach) = match light.place {
             LightPlace::Directional { towards } => (with(towards.normalize_or(Vec3::Y), 0.0), 0.0),
@@ -105,45 +129,55 @@ impl From<&crate::Light> for Light {
     }
 }
 
-impl Frame {
-    /// What the shaders are given for a view.
-    ///
-    /// # Panics
-    /// If there are more than [`MAX_LIGHTS`] lights.
-    pub fn new(view: &View, lights: &Lights, node_capacity: u32) -> Self {
-        let count = lights.lights.len();
-        assert!(count <= MAX_LIGHTS, "{count} lights, a frame can have {MAX_LIGHTS}");
-        let mut array = [Light { place: [0.0; 4], color: [0.0; 4] }; MAX_LIGHTS];
-        array.iter_mut().zip(&lights.lights).for_each(|(slot, light)| *slot = light.into());
-        let projection = view.projection_matrix();
+impl From<&View> for LensUniform {
+    fn from(view: &View) -> Self {
+        let lens = view.lens();
         Self {
-            view: view.view_matrix().to_cols_array_2d(),
+            to_eye: lens.to_eye.to_cols_array_2d(),
+            center: lens.center.to_array(),
+            focal: lens.focal.to_array(),
+            skew: lens.skew,
+            even_focal: lens.even_focal().unwrap_or(0.0),
+            near: lens.near,
+            nearness_slope: lens.nearness_slope,
+            depth_offset: lens.depth_offset,
+            depth_scale: lens.depth_scale,
+            is_perspective: lens.is_perspective.into(),
+            unused: 0,
+        }
+    }
+}
+
+impl ViewUniform {
+    /// What the shaders are given for a view. Lights beyond [`MAX_LIGHTS`] are left out.
+    pub fn new(view: &View, lights: &Lights) -> Self {
+        let mut array = [LightUniform { place: [0.0; 4], color: [0.0; 4] }; MAX_LIGHTS];
+        array.iter_mut().zip(&lights.lights).for_each(|(slot, light)| *slot = light.into());
+        Self {
             view_projection: view.view_projection().to_cols_array_2d(),
-            eye: with(view.eye, 1.0),
+            lens: view.into(),
+            eye: view.lens().eye.to_array(),
             sky: with(lights.sky, 0.0),
             ground: with(lights.ground, 0.0),
-            size: view.size,
-            focal: 1.0 / view.pixel_angle(),
-            near: view.near,
-            // z / w = -projection[2][2] + projection[3][2] / w, since w is the distance and z is linear in it.
-            depth_offset: -projection.z_axis.z,
-            depth_scale: 1.0 / projection.w_axis.z,
-            light_count: count as u32,
-            node_capacity,
+            size: view.size(),
+            offset: view.viewport().offset(),
+            target_size: view.viewport().target(),
+            light_count: lights.lights.len().min(MAX_LIGHTS) as u32,
+            unused: 0,
             lights: array,
         }
     }
 }
 
-impl Section {
+impl SectionUniform {
     /// What the shaders are given for a section.
     pub fn new(shape: StrandShape, info: &StrandInfo, material: &Material, pose: &Pose) -> Self {
-        let Material { base_color: base, tip_color: tip, primary, secondary, .. } = *material;
+        let Material { base_color, tip_color, primary, secondary, .. } = *material;
         let matrix: Mat4 = pose.matrix();
         Self {
             pose: matrix.to_cols_array_2d(),
-            base: [base[0], base[1], base[2], material.opacity],
-            tip: [tip[0], tip[1], tip[2], material.tip_opacity],
+            base: with(base_color, material.opacity),
+            tip: with(tip_color, material.tip_opacity),
             strands: shape.strands(),
             guides: shape.guides,
             vertices: shape.vertices,
@@ -151,7 +185,7 @@ impl Section {
             tip_width: material.tip_width,
             diffuse: material.diffuse,
             variation: material.variation,
-            form: material.form,
+            self_shadow: material.self_shadow,
             primary: [primary.strength, primary.exponent],
             secondary: [secondary.strength, secondary.exponent],
             tilt: material.tilt.to_radians(),

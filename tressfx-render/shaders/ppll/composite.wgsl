@@ -1,8 +1,8 @@
 // The resolved hair lies over the picture. A tile without hair collapses to a point and draws nothing.
 
-import package::frame::Frame;
+import package::view::ViewUniform;
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<storage, read> tiles: array<u32>;
 @group(0) @binding(2) var<storage, read> resolved: array<vec2<u32>>;
 
@@ -13,17 +13,19 @@ fn tile_corner(@builtin(instance_index) tile: u32, @builtin(vertex_index) vertex
     if tiles[tile] == 0u {
         return vec4(0.0, 0.0, 0.0, 1.0);
     }
-    let columns = (frame.size.x + TILE - 1u) / TILE;
+    let columns = (view.size.x + TILE - 1u) / TILE;
     // Two triangles with the corners 0 1 2 and 2 1 3, two bits each.
     let corner = (0xda4u >> (2u * vertex)) & 3u;
     let pixel = (vec2(tile % columns, tile / columns) + vec2(corner & 1u, corner >> 1u)) * TILE;
-    let clip = vec2<f32>(pixel) / vec2<f32>(frame.size) * 2.0 - 1.0;
+    // Tiles at the edge end where the viewport does.
+    let place = min(pixel, view.size) + view.offset;
+    let clip = vec2<f32>(place) / vec2<f32>(view.target_size) * 2.0 - 1.0;
     return vec4(clip.x, -clip.y, 0.0, 1.0);
 }
 
 @fragment
 fn composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(position.xy);
-    let color = resolved[pixel.y * frame.size.x + pixel.x];
+    let pixel = vec2<u32>(position.xy) - view.offset;
+    let color = resolved[pixel.y * view.size.x + pixel.x];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
 }

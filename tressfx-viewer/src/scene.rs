@@ -1,20 +1,18 @@
-//! `hair.render.scene`: opaque meshes and the backdrop.
+//! `viewer.scene`: opaque meshes and the backdrop, and the light of a studio.
 
 use glam::Vec3;
 use tressfx_asset::mesh::Mesh;
-use tressfx_core::backend::{Backend, Blend, BufferDesc, Depth, DepthOrder, Format};
-use tressfx_core::error::Result;
+use tressfx_core::backend::{Backend, Blend, BufferDesc, Depth, DepthOrder, Format, RasterDesc};
+use tressfx_core::error::{Label, Result};
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
-use tressfx_core::shader::RasterPipeline;
+use tressfx_core::shader::{Module, RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::view::{Pose, View};
+use tressfx_render::uniforms::ViewUniform;
+use tressfx_render::{Light, Lights, Targets, VIEW_MODULE};
 
-use crate::lights::Lights;
-use crate::renderer::Targets;
-use crate::{gpu, shaders};
-
-const LABEL: &str = "hair.render.scene";
+const LABEL: &str = "viewer.scene";
 
 /// How a mesh looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,7 +110,7 @@ pub struct ScenePass {
     order: DepthOrder,
     mesh: RasterPipeline,
     backdrop: RasterPipeline,
-    frame: BufferId,
+    view: BufferId,
     gradient: BufferId,
 }
 
@@ -127,14 +125,17 @@ impl ScenePass {
         let backdrop = ("backdrop", include_str!("../shaders/backdrop.wgsl"));
         Ok(Self {
             order,
-            mesh: shaders::raster(backend, LABEL, mesh, target, depth)?,
-            backdrop: shaders::raster(backend, "hair.render.backdrop", backdrop, target, depth)?,
-            frame: uniform_buffer::<gpu::Frame>(backend, "hair.render.scene.frame")?,
-            gradient: uniform_buffer::<uniform::Backdrop>(backend, "hair.render.backdrop")?,
+            mesh: raster(backend, LABEL, mesh, target, depth)?,
+            backdrop: raster(backend, "viewer.backdrop", backdrop, target, depth)?,
+            view: uniform_buffer::<ViewUniform>(backend, "viewer.scene.view")?,
+            gradient: uniform_buffer::<uniform::Backdrop>(backend, "viewer.backdrop")?,
         })
     }
 
     /// Clears the targets and draws meshes before the backdrop.
+    ///
+    /// # Errors
+    /// None that can be reached: the names of bindings are those of the shaders.
     ///
     /// # Panics
     /// If the view has another order of depth than the pass.
@@ -146,35 +147,38 @@ impl ScenePass {
         targets: &Targets,
         backdrop: &Backdrop,
         meshes: &[MeshDraw],
-    ) {
-        assert_eq!(view.depth, self.order, "the order of depth of the view and of the scene pass");
-        list.upload(self.frame, 0, &[gpu::Frame::new(view, lights, 0)]);
+    ) -> Result<()> {
+        assert_eq!(view.depth(), self.order, "the order of depth of the view and of the scene pass");
+        list.upload(self.view, 0, &[ViewUniform::new(view, lights)]);
         list.upload(self.gradient, 0, &[backdrop.uniform(view)]);
         for draw in meshes {
             list.upload(draw.mesh.uniform, 0, &[draw.uniform()]);
         }
-        let gradient = self.backdrop.bind(&[("gradient", self.gradient.into())]).expect("the names of the shader");
         let mut pass = RasterPass::new(LABEL)
             .color(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))
             .depth(targets.depth, Load::Clear(self.order.far()));
-        pass.draws.extend(meshes.iter().map(|draw| self.mesh(draw.mesh)));
+        for draw in meshes {
+            pass = pass.draw(self.mesh(draw.mesh)?);
+        }
+        let gradient = self.backdrop.bind(&[("gradient", self.gradient.into())])?;
         list.raster(pass.draw(Draw::new(&self.backdrop, &gradient, 3, 1)));
+        Ok(())
     }
 
-    fn mesh(&self, mesh: &SceneMesh) -> Draw {
+    fn mesh(&self, mesh: &SceneMesh) -> Result<Draw> {
         let bindings = self.mesh.bind(&[
-            ("frame", self.frame.into()),
+            ("view", self.view.into()),
             ("surface", mesh.uniform.into()),
             ("vertices", mesh.vertices.into()),
             ("indices", mesh.indices.into()),
-        ]);
-        Draw::new(&self.mesh, &bindings.expect("the names of the shader"), mesh.index_count, 1)
+        ])?;
+        Ok(Draw::new(&self.mesh, &bindings, mesh.index_count, 1))
     }
 
     /// Frees what it made.
     pub fn destroy(self, backend: &mut dyn Backend) {
         [self.mesh, self.backdrop].into_iter().for_each(|kernel| backend.destroy_pipeline(kernel.pipeline));
-        [self.frame, self.gradient].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        [self.view, self.gradient].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
@@ -189,9 +193,9 @@ impl SceneMesh {
             pairs.flat_map(|(p, n)| [p.extend(1.0).to_array(), n.extend(0.0).to_array()]).collect();
         let mut buffer = |label, bytes: usize| backend.create_buffer(&BufferDesc::storage(label, bytes.max(32) as u64));
         let made = Self {
-            vertices: buffer("hair.render.scene.vertices", size_of_val(&vertices[..]))?,
-            indices: buffer("hair.render.scene.indices", size_of_val(&mesh.indices[..]))?,
-            uniform: uniform_buffer::<uniform::Surface>(backend, "hair.render.scene.surface")?,
+            vertices: buffer("viewer.scene.vertices", size_of_val(&vertices[..]))?,
+            indices: buffer("viewer.scene.indices", size_of_val(&mesh.indices[..]))?,
+            uniform: uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?,
             index_count: mesh.indices.len() as u32,
         };
         list.upload(made.vertices, 0, &vertices);
@@ -221,11 +225,37 @@ impl Backdrop {
         uniform::Backdrop {
             middle: self.middle.extend(1.0).to_array(),
             edge: self.edge.extend(1.0).to_array(),
-            size: view.size.map(|side| side as f32),
-            far: view.depth.far(),
+            size: view.size().map(|side| side as f32),
+            far: view.depth().far(),
             unused: 0.0,
         }
     }
+}
+
+/// A portrait studio for a subject that faces +z: a warm key light from the upper right, a cool fill from the left, and a
+/// light from behind that draws the outline.
+pub fn studio_lights() -> Lights {
+    Lights {
+        sky: Vec3::new(0.22, 0.24, 0.28),
+        ground: Vec3::new(0.09, 0.08, 0.07),
+        lights: vec![
+            Light::directional(Vec3::new(0.75, 0.8, 0.75), Vec3::new(2.3, 2.1, 1.85)),
+            Light::directional(Vec3::new(-0.9, 0.25, 0.6), Vec3::new(0.35, 0.42, 0.55)),
+            Light::directional(Vec3::new(-0.45, 0.65, -0.9), Vec3::new(1.1, 1.2, 1.4)),
+        ],
+    }
+}
+
+fn raster(
+    backend: &mut dyn Backend,
+    label: Label,
+    root: Module,
+    target: (Format, Blend),
+    depth: Depth,
+) -> Result<RasterPipeline> {
+    let source = ShaderSource { label, root, library: &[VIEW_MODULE] };
+    let shader = Shader::new(&source, &Specialization::new())?.into();
+    backend.create_raster(&RasterDesc::new(shader).target(target.0, target.1).depth(depth))
 }
 
 fn uniform_buffer<T>(backend: &mut dyn Backend, label: &'static str) -> Result<BufferId> {
@@ -241,7 +271,7 @@ mod tests {
     #[test]
     fn structs_are_laid_out_as_in_the_wgsl() {
         let pass = ScenePass::new(&mut NullBackend::default(), Format::Rgba16F, DepthOrder::Reverse).unwrap();
-        pass.mesh.shader.check_layout::<gpu::Frame>().unwrap();
+        pass.mesh.shader.check_layout::<ViewUniform>().unwrap();
         pass.mesh.shader.check_layout::<uniform::Surface>().unwrap();
         pass.backdrop.shader.check_layout::<uniform::Backdrop>().unwrap();
     }

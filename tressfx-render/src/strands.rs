@@ -1,8 +1,8 @@
-//! A section of a groom on the GPU.
+//! Strands with what it takes to shade and to draw them.
 
 use glam::Vec3;
-use tressfx_core::backend::{Backend, BufferDesc, BufferUses};
-use tressfx_core::error::Result;
+use tressfx_core::backend::{Backend, BufferDesc, Owner};
+use tressfx_core::error::{Error, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;
@@ -10,7 +10,8 @@ use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
 use crate::material::Material;
-use crate::{gpu, openness};
+use crate::uniforms::SectionUniform;
+use crate::visibility;
 
 /// Segments that a prediction looks at.
 const SAMPLES: usize = 4096;
@@ -35,7 +36,7 @@ pub struct StrandInfo {
     /// `w + (x * tangent + y * across + z * cross(tangent, across)) . d`, from 0 to 1, where `across` is the part of the
     /// strand's first edge that is perpendicular to the tangent, of length 1 unless it is nearly 0. `[0, 0, 0, 1]` is a
     /// strand that nothing shades.
-    pub openness: Vec<[f32; 4]>,
+    pub visibility: Vec<[f32; 4]>,
     /// An even sample of the segments of the rest pose: both ends, and the shares of the full width there. From it the
     /// number of fragments is predicted.
     pub sample: Vec<([Vec3; 2], [f32; 2])>,
@@ -54,9 +55,9 @@ impl StrandInfo {
         let count = segments.min(SAMPLES);
         let sample = (0..count).map(|i| segment(i * segments / count)).collect();
         let fitting_radius = fitting_radius(strands);
-        let openness = openness::openness(strands, fitting_radius / strands.metres_per_unit);
-        let openness = strands.interleave(&openness);
-        Self { metres_per_unit: strands.metres_per_unit, fitting_radius, openness, sample }
+        let visibility = visibility::visibility(strands, fitting_radius / strands.metres_per_unit);
+        let visibility = strands.interleave(&visibility);
+        Self { metres_per_unit: strands.metres_per_unit, fitting_radius, visibility, sample }
     }
 
     /// Radius of a fibre in the unit of the positions.
@@ -76,20 +77,21 @@ fn fitting_radius(strands: &Strands) -> f32 {
     radius.clamp(THINNEST, THICKEST) as f32
 }
 
-/// A section that can be drawn.
-#[derive(Clone, Debug)]
-pub struct Section {
+/// The strands of a section with what shading needs, and the colours that it gives them.
+#[derive(Debug)]
+pub struct ShadedStrands {
     pub(crate) buffers: StrandBuffers,
     pub(crate) info: StrandInfo,
-    /// [`gpu::Section`].
+    /// [`SectionUniform`].
     pub(crate) uniform: BufferId,
-    /// [`StrandInfo::openness`].
-    pub(crate) openness: BufferId,
+    /// [`StrandInfo::visibility`].
+    pub(crate) visibility: BufferId,
     /// `vec2<u32>` a vertex of every strand: four half floats, colour and opacity.
     pub(crate) colors: BufferId,
+    owner: Owner,
 }
 
-impl Section {
+impl ShadedStrands {
     /// Makes what rendering needs beside `buffers`, which stay the caller's, and uploads it with the next run of `list`.
     ///
     /// # Errors
@@ -104,25 +106,22 @@ impl Section {
         mut info: StrandInfo,
     ) -> Result<Self> {
         let shape = buffers.shape;
-        assert_eq!(info.openness.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
-        let mut made = Vec::new();
-        let mut create = |label, bytes, usage| -> Result<BufferId> {
-            let buffer = backend.create_buffer(&BufferDesc::new(label, bytes, usage | BufferUses::COPIES));
-            // What was made before goes with what could not be made.
-            if buffer.is_err() {
-                made.iter().for_each(|&buffer: &BufferId| backend.destroy(buffer.into()));
-            }
-            made.extend(buffer.as_ref().ok());
-            buffer
-        };
-        let uniform = create("hair.render.section", size_of::<gpu::Section>() as u64, BufferUses::UNIFORM)?;
-        let open_bytes = (16 * u64::from(shape.guide_vertices())).max(16);
-        let openness = create("hair.render.openness", open_bytes, BufferUses::STORAGE)?;
-        let color_bytes = (8 * u64::from(shape.strand_vertices())).max(16);
-        let colors = create("hair.render.colors", color_bytes, BufferUses::STORAGE)?;
-        list.upload(openness, 0, &info.openness);
+        assert_eq!(info.visibility.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
+        let vertex_bytes = |bytes: u64, count: u32| (bytes * u64::from(count)).max(16);
+        let made = Owner::build(backend, |backend| {
+            let uniform = BufferDesc::uniform("hair.render.section", size_of::<SectionUniform>() as u64);
+            let visibility = vertex_bytes(16, shape.guide_vertices());
+            let colors = vertex_bytes(8, shape.strand_vertices());
+            Ok::<_, Error>([
+                backend.create_buffer(&uniform)?,
+                backend.create_buffer(&BufferDesc::storage("hair.render.visibility", visibility))?,
+                backend.create_buffer(&BufferDesc::storage("hair.render.colors", colors))?,
+            ])
+        });
+        let ([uniform, visibility, colors], owner) = made?;
+        list.upload(visibility, 0, &info.visibility);
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
-        Ok(Self { buffers, info, uniform, openness, colors })
+        Ok(Self { buffers, info, uniform, visibility, colors, owner })
     }
 
     /// Colours as `hair.render.shade` leaves them: for tests and tools.
@@ -130,30 +129,36 @@ impl Section {
         self.colors
     }
 
-    /// Frees what [`Section::new`] made.
+    /// Frees what [`ShadedStrands::new`] made.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        [self.uniform, self.openness, self.colors].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        self.owner.destroy(backend);
     }
 }
 
 /// A section in a frame.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct SectionDraw<'a> {
-    /// The section.
-    pub section: &'a Section,
+    /// Its strands.
+    pub strands: &'a ShadedStrands,
     /// Its look.
     pub material: &'a Material,
     /// From the positions in its buffers to the world: `HairSim::pose`, or what takes [`StrandBuffers::center`] to its place.
     pub pose: Pose,
 }
 
-impl SectionDraw<'_> {
+impl<'a> SectionDraw<'a> {
+    /// A section in its place.
+    pub fn new(strands: &'a ShadedStrands, material: &'a Material, pose: Pose) -> Self {
+        Self { strands, material, pose }
+    }
+
     /// What the shaders are given.
-    pub fn uniform(&self) -> gpu::Section {
-        gpu::Section::new(self.section.buffers.shape, &self.section.info, self.material, &self.pose)
+    pub fn uniform(&self) -> SectionUniform {
+        SectionUniform::new(self.strands.buffers.shape, &self.strands.info, self.material, &self.pose)
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.section.buffers.shape.segments() == 0
+        self.strands.buffers.shape.segments() == 0
     }
 }

@@ -1,6 +1,6 @@
 // Opaque meshes beside the hair: heads, bodies, the capsules that hair collides with. Matte, with a soft edge of shadow.
 
-import package::frame::{Frame, ambient, towards};
+import package::view::{ViewUniform, ambient, towards, towards_eye};
 
 struct Surface {
     pose: mat4x4<f32>,
@@ -9,7 +9,7 @@ struct Surface {
     look: vec4<f32>,
 }
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<uniform> surface: Surface;
 // Position and normal of each vertex.
 @group(0) @binding(2) var<storage, read> vertices: array<vec4<f32>>;
@@ -26,25 +26,25 @@ fn place(@builtin(vertex_index) i: u32) -> Varying {
     let vertex = indices[i];
     let point = (surface.pose * vec4(vertices[2u * vertex].xyz, 1.0)).xyz;
     let normal = (surface.pose * vec4(vertices[2u * vertex + 1u].xyz, 0.0)).xyz;
-    return Varying(frame.view_projection * vec4(point, 1.0), point, normal);
+    return Varying(view.view_projection * vec4(point, 1.0), point, normal);
 }
 
 @fragment
 fn scene(in: Varying) -> @location(0) vec4<f32> {
-    let eye = normalize(frame.eye.xyz - in.point);
+    let eye = normalize(towards_eye(view.eye, in.point));
     // Both sides are drawn, whatever the winding of the file.
     let outside = normalize(in.normal);
     let normal = select(-outside, outside, dot(outside, eye) >= -0.05);
     let rim = surface.look.x * pow(1.0 - saturate(dot(normal, eye)), 4.0);
     let wrap = surface.look.w;
-    var sum = surface.color.rgb * ambient(frame.sky, frame.ground, normal);
-    for (var i = 0u; i < frame.light_count; i++) {
-        let light = towards(frame.lights[i], in.point);
+    var sum = surface.color.rgb * ambient(view.sky, view.ground, normal);
+    for (var i = 0u; i < view.light_count; i++) {
+        let light = towards(view.lights[i], in.point);
         let facing = dot(normal, light.xyz);
         let diffuse = surface.color.rgb * saturate((facing + wrap) / (1.0 + wrap));
         let glint = pow(saturate(dot(normal, normalize(light.xyz + eye))), surface.look.z);
         let sheen = vec3(surface.look.y * glint * saturate(facing) + rim * saturate(facing + 0.3));
-        sum += frame.lights[i].color.rgb * light.w * (diffuse + sheen);
+        sum += view.lights[i].color.rgb * light.w * (diffuse + sheen);
     }
     return vec4(sum, 1.0);
 }

@@ -30,9 +30,9 @@ const SKIN: f32 = 6.0;
 /// Weights of Lebedev's 26 points on a sphere: those of the axes, of the edges and of the corners of a cube.
 const WEIGHTS: [f32; 3] = [1.0 / 21.0, 4.0 / 105.0, 9.0 / 280.0];
 
-/// For each vertex of the guides, strand-major: in the frame of [`crate::StrandInfo::openness`]. `radius` is that of a fibre in
+/// For each vertex of the guides, strand-major: in the frame of [`crate::StrandInfo::visibility`]. `radius` is that of a fibre in
 /// the unit of the file.
-pub(crate) fn openness(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
+pub(crate) fn visibility(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
     let lattice = Lattice::around(strands);
     let mut medium = Medium { lattice, depth: vec![0.0; lattice.cells()] };
     medium.add_hair(strands, radius);
@@ -215,28 +215,28 @@ mod tests {
         Strands::new(&asset, &StrandOptions { shuffle: false, ..StrandOptions::default() }).unwrap()
     }
 
-    fn at(strands: &Strands, openness: &[[f32; 4]], strand: usize, vertex: usize) -> [f32; 4] {
-        openness[strand * strands.vertices as usize + vertex]
+    fn at(strands: &Strands, visibility: &[[f32; 4]], strand: usize, vertex: usize) -> [f32; 4] {
+        visibility[strand * strands.vertices as usize + vertex]
     }
 
     #[test]
     fn light_reaches_tips_and_edges_and_not_the_roots_in_the_middle() {
         let strands = brush(20);
-        let openness = openness(&strands, 0.02);
+        let visibility = visibility(&strands, 0.02);
         let (middle, edge) = (10 * 20 + 10, 10 * 20);
-        let [root, tip] = [1, 15].map(|vertex| at(&strands, &openness, middle, vertex));
+        let [root, tip] = [1, 15].map(|vertex| at(&strands, &visibility, middle, vertex));
         assert!(tip[3] > 0.35 && tip[3] < 0.7, "half of the sky is open: {tip:?}");
         assert!(root[3] < 0.5 * tip[3], "{root:?}");
         assert!(tip[0] > 0.3, "from along the strand: {tip:?}");
-        assert!(at(&strands, &openness, edge, 8)[3] > 1.5 * at(&strands, &openness, middle, 8)[3]);
-        assert!(openness.iter().flatten().all(|x| x.is_finite() && x.abs() <= 1.6));
+        assert!(at(&strands, &visibility, edge, 8)[3] > 1.5 * at(&strands, &visibility, middle, 8)[3]);
+        assert!(visibility.iter().flatten().all(|x| x.is_finite() && x.abs() <= 1.6));
     }
 
     #[test]
     fn a_single_strand_is_lit_from_everywhere_but_the_skin() {
         let strands = brush(1);
-        let openness = openness(&strands, 1e-5);
-        let tip = at(&strands, &openness, 0, 15);
+        let visibility = visibility(&strands, 1e-5);
+        let tip = at(&strands, &visibility, 0, 15);
         assert!(tip[3] > 0.9 && tip[0].abs() < 0.2, "{tip:?}");
     }
 

@@ -1,0 +1,59 @@
+// Strands become fragments in the lists of pixels, one thread a segment.
+
+import package::grid::{GROUP, thread_index};
+import package::node::Counters;
+import package::ribbon::Ribbon;
+import package::sink::{Sink, pool};
+import package::strands::{Paint, paint_of, ribbon_of, section};
+import package::walk::walk;
+
+@group(0) @binding(9) var<storage, read_write> counters: Counters;
+
+// One request to the pool a group instead of one a fragment: everybody waits for that counter.
+var<workgroup> requested: atomic<u32>;
+var<workgroup> granted: u32;
+
+// The number of the first of `count` nodes. The counter ends at the limit: nodes beyond the capacity do not exist, and one
+// that wrapped would give nodes out twice.
+fn request(count: u32) -> u32 {
+    if count <= pool.small_request {
+        return atomicAdd(&counters.fragments, count);
+    }
+    var old = atomicLoad(&counters.fragments);
+    while old < pool.limit {
+        let exchange = atomicCompareExchangeWeak(&counters.fragments, old, old + min(count, pool.limit - old));
+        if exchange.exchanged {
+            break;
+        }
+        old = exchange.old_value;
+    }
+    return old;
+}
+
+@compute @workgroup_size(GROUP)
+fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+        @builtin(local_invocation_index) lane: u32) {
+    if lane == 0u {
+        atomicStore(&requested, 0u);
+    }
+    workgroupBarrier();
+    let i = thread_index(group, groups, lane);
+    var ribbon: Ribbon;
+    var paint: Paint;
+    if i < section.strands * (section.vertices - 1u) {
+        ribbon = ribbon_of(i % section.strands, i / section.strands);
+        paint = paint_of(i % section.strands, i / section.strands);
+    }
+    var counted: Sink;
+    walk(ribbon, paint, &counted);
+    let place = atomicAdd(&requested, counted.count);
+    workgroupBarrier();
+    if lane == 0u {
+        granted = request(atomicLoad(&requested));
+    }
+    workgroupBarrier();
+    if granted < pool.capacity {
+        var stored = Sink(granted + place, counted.count, 0u);
+        walk(ribbon, paint, &stored);
+    }
+}

@@ -1,0 +1,46 @@
+// Lists of fragments, one a pixel. A node is a key, red and green, blue and alpha, and the number of the next.
+
+import package::fragment::Fragment;
+
+// Nodes are numbered from 1, so that a cleared head is an empty list.
+const NOTHING: u32 = 0u;
+
+struct Counters {
+    // Fragments that passed the depth test.
+    fragments: atomic<u32>,
+    // Of those, the ones that found no room in the pool.
+    dropped: u32,
+    // Pixels with at least one fragment.
+    pixels_with_hair: atomic<u32>,
+    // 1 where counting has ended at the limit.
+    saturated: u32,
+}
+
+struct PoolUniform {
+    // Fragments that there is room for.
+    capacity: u32,
+    // Where counting ends: at least the capacity, at most 2^31 - 1.
+    limit: u32,
+    // Requests up to this one are added without a look at the limit: all groups of the frame together ask for less than the
+    // limit then, so that the counter stays below 2 * limit whatever happens, and never wraps.
+    small_request: u32,
+    unused: u32,
+}
+
+// Smaller is nearer. `nearness` is not negative, so that its bits are in its order.
+fn depth_key(nearness: f32) -> u32 {
+    return ~bitcast<u32>(nearness);
+}
+
+fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {
+    let blue = pack2x16float(vec2(fragment.color.b, 0.0));
+    return vec4(depth_key(fragment.nearness), pack2x16float(fragment.color.rg), blue | (fragment.alpha << 16u), next);
+}
+
+fn node_color(node: vec3<u32>) -> vec3<f32> {
+    return vec3(unpack2x16float(node.y), unpack2x16float(node.z & 0xffffu).x);
+}
+
+fn node_alpha(node: vec3<u32>) -> u32 {
+    return node.z >> 16u;
+}

@@ -1,0 +1,180 @@
+//! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
+
+mod composite;
+mod fill;
+mod pool;
+mod resolve;
+
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::error::{Error, Need, Result};
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::shader::Module;
+
+use crate::renderer::Targets;
+use crate::shaders::{GROUP, with_shared};
+use crate::strands::SectionDraw;
+use crate::technique::Order;
+use crate::views::BoundView;
+use pool::{NodePool, Resolved};
+
+pub use pool::Counters;
+#[cfg(test)]
+pub(crate) use pool::PoolUniform;
+pub use resolve::{K_RANGE, TILE};
+
+/// What the kernels of this technique import.
+const LIBRARY: &[Module] = &with_shared::<2, 10>([
+    ("node", include_str!("../shaders/ppll/node.wgsl")),
+    ("sink", include_str!("../shaders/ppll/sink.wgsl")),
+]);
+
+/// Lists of fragments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PpllDesc {
+    /// How many of the nearest fragments of a pixel are put in order exactly; the rest is blended without order. In
+    /// [`K_RANGE`].
+    pub k: u32,
+    /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
+    pub max_node_bytes: u64,
+    /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
+    pub count_limit: u32,
+}
+
+impl PpllDesc {
+    /// The same with `k` sorted fragments a pixel.
+    #[must_use]
+    pub fn k(self, k: u32) -> Self {
+        Self { k, ..self }
+    }
+
+    /// The same with room for at most so many bytes of fragments.
+    #[must_use]
+    pub fn max_node_bytes(self, max_node_bytes: u64) -> Self {
+        Self { max_node_bytes, ..self }
+    }
+
+    /// The same with another end of counting.
+    #[must_use]
+    pub fn count_limit(self, count_limit: u32) -> Self {
+        Self { count_limit, ..self }
+    }
+
+    /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
+    /// that still has to fit into 32 bits.
+    pub const COUNT_LIMIT: u32 = i32::MAX as u32;
+}
+
+impl Default for PpllDesc {
+    /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
+    fn default() -> Self {
+        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT }
+    }
+}
+
+impl From<PpllDesc> for crate::Technique {
+    fn from(desc: PpllDesc) -> Self {
+        Self::Ppll(desc)
+    }
+}
+
+/// Pixels of a view: a group of `hair.render.fill`, of which each thread may cover all of them, counts in 31 bits.
+const MAX_PIXELS: u64 = 1 << 25;
+
+/// Lists of fragments at work.
+#[derive(Debug)]
+pub(crate) struct Ppll {
+    desc: PpllDesc,
+    fill: fill::Fill,
+    resolve: resolve::Resolve,
+    composite: composite::Composite,
+    pool: NodePool,
+    resolved: Resolved,
+}
+
+impl Ppll {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
+        check(backend, size)?;
+        Ok(Self {
+            desc: *desc,
+            fill: fill::Fill::new(backend)?,
+            resolve: resolve::Resolve::new(backend, desc.k)?,
+            composite: composite::Composite::new(backend, target)?,
+            pool: NodePool::new(backend, size, desc)?,
+            resolved: Resolved::new(backend, size)?,
+        })
+    }
+
+    fn forget_bindings(&mut self) {
+        self.fill.bound.clear();
+        self.resolve.bound.clear();
+        self.composite.bound.clear();
+    }
+
+    #[cfg(test)]
+    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
+        [&self.fill.kernel.shader, &self.resolve.kernel.shader, &self.composite.pipeline.shader]
+    }
+}
+
+impl Order for Ppll {
+    fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
+        check(backend, size)?;
+        let pool = NodePool::new(backend, size, &self.desc)?;
+        let resolved = Resolved::new(backend, size)?;
+        std::mem::replace(&mut self.pool, pool).destroy(backend);
+        std::mem::replace(&mut self.resolved, resolved).destroy(backend);
+        self.forget_bindings();
+        Ok(())
+    }
+
+    fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
+        let grown = self.pool.grow(backend, fragments);
+        self.forget_bindings();
+        grown
+    }
+
+    fn capacity(&self) -> u32 {
+        self.pool.capacity
+    }
+
+    fn counters(&self, view: usize) -> (BufferId, u64) {
+        (self.pool.counters[view], 0)
+    }
+
+    fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
+        self.fill.bound.begin_frame();
+        self.resolve.bound.begin_frame();
+        self.composite.bound.begin_frame();
+        let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
+        self.pool.begin(list, views, groups);
+    }
+
+    fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
+        self.pool.clear_heads(list, view.size);
+        for draw in draws {
+            self.fill.pass(list, view, draw, &self.pool, targets.depth)?;
+        }
+        self.resolve.pass(list, view, &self.pool, &self.resolved)?;
+        self.composite.pass(list, view, &self.resolved, targets.color)
+    }
+}
+
+/// Groups that fill the lists from a section.
+fn groups(draw: &SectionDraw) -> u64 {
+    let [x, y, z] = Grid::for_threads(draw.strands.buffers.shape.segments(), GROUP).0.map(u64::from);
+    x * y * z
+}
+
+/// Whether a device can draw hair on a screen of this size.
+fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if pixels > MAX_PIXELS {
+        let message = format!("a picture of {} x {} pixels, it may have {MAX_PIXELS}", size[0], size[1]);
+        return Err(Error::Backend { label: "hair.render", message });
+    }
+    let needs =
+        [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(8 * pixels)];
+    backend.caps().check("hair.render", &needs)
+}

@@ -1,0 +1,59 @@
+//! `hair.render.resolve`: the list of each pixel becomes one colour.
+
+use std::ops::RangeInclusive;
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::shader::{Kernel, Specialization};
+
+use super::LIBRARY;
+use super::pool::{NodePool, Resolved};
+use crate::bound::Bound;
+use crate::shaders::compute;
+use crate::views::BoundView;
+
+/// Fragments of a pixel that may be sorted exactly.
+pub const K_RANGE: RangeInclusive<u32> = 1..=16;
+
+/// Pixels along the edge of a tile: a group of this kernel, and what `hair.render.composite` draws or leaves out.
+pub const TILE: u32 = 8;
+
+#[derive(Debug)]
+pub(crate) struct Resolve {
+    pub(crate) kernel: Kernel,
+    pub(crate) bound: Bound<usize>,
+}
+
+impl Resolve {
+    /// # Panics
+    /// If `k` is outside [`K_RANGE`].
+    pub(crate) fn new(backend: &mut dyn Backend, k: u32) -> Result<Self> {
+        assert!(K_RANGE.contains(&k), "k is {k}, it must be in {K_RANGE:?}");
+        let root = ("resolve", include_str!("../../shaders/ppll/resolve.wgsl"));
+        let kernel = compute(backend, "hair.render.resolve", root, LIBRARY, &Specialization::new().constant("K", k))?;
+        Ok(Self { kernel, bound: Bound::new() })
+    }
+
+    pub(crate) fn pass(
+        &mut self,
+        list: &mut PassList,
+        view: &BoundView,
+        pool: &NodePool,
+        resolved: &Resolved,
+    ) -> Result<()> {
+        let bindings = self.bound.get(view.index, || {
+            self.kernel.bind(&[
+                ("view", view.uniform),
+                ("pool", pool.uniform.into()),
+                ("heads", pool.heads.into()),
+                ("nodes", pool.nodes.into()),
+                ("counters", pool.counters[view.index].into()),
+                ("resolved", resolved.colors.into()),
+                ("tiles", resolved.tiles.into()),
+            ])
+        })?;
+        list.compute(&self.kernel, &bindings, Grid::for_image(view.size, TILE));
+        Ok(())
+    }
+}
