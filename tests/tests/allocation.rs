@@ -7,7 +7,7 @@ use tressfx_core::glam::Vec3;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_render::{HairRenderer, RenderDesc, Section, StrandInfo};
+use tressfx_render::{HairRenderer, RenderDesc, ShadedStrands, StrandInfo};
 use tressfx_sim::{HairSim, SectionDesc, SimParams};
 
 fn backend() -> Failing<NullBackend> {
@@ -55,7 +55,7 @@ fn a_renderer_its_size_and_its_sections() {
     let info = StrandInfo::new(&strands);
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
     let (section, failures) =
-        backend.fail_everywhere(|backend| Section::new(backend, &mut PassList::new(), buffers, info.clone()));
+        backend.fail_everywhere(|backend| ShadedStrands::new(backend, &mut PassList::new(), buffers, info.clone()));
     assert!(failures > 1, "{failures} creations");
     section.destroy(&mut backend);
     renderer.destroy(&mut backend);
