@@ -8,9 +8,9 @@ use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
 use tressfx_conformance::rules::{World, broken_descriptions, broken_lists, mistakes, random_list};
 use tressfx_conformance::run_and_read;
-use tressfx_core::backend::{Backend, Record, Run};
+use tressfx_core::backend::{Backend, BufferDesc, Record, Run};
 use tressfx_core::error::{Error, Result};
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Load, PassList, RasterPass};
 
 mod support;
 
@@ -44,6 +44,11 @@ fn hold<B: Run>(
             Err(error) => panic!("seed {seed}: {error}: {list:?}"),
         }
     }
+    // Names are for people: whatever is in them, they break nothing.
+    let named = backend.create_buffer(&BufferDesc::storage("rules.\0name", 16)).unwrap();
+    list.scope(Some("a \0 scope".into()));
+    list.raster(RasterPass::new("rules.\0pass").depth(world.depth(), Load::Clear(1.0)));
+    list.clear(named, 0, 16);
     let ticket = list.read_buffer(marker, 0, bytes);
     assert!(run_and_read(backend, &list, ticket).iter().all(|&byte| byte == 0), "it works as before");
     println!(

@@ -214,6 +214,11 @@ impl World {
         list
     }
 
+    /// A depth texture of eight by eight texels.
+    pub fn depth(&self) -> TextureId {
+        self.depth
+    }
+
     /// The buffer that stays zero as long as nothing of a broken list is done, and its size.
     pub fn marker(&self) -> (BufferId, u64) {
         (self.marker, BYTES)
