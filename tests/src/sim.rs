@@ -8,7 +8,7 @@ use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::Run;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{StrandOptions, Strands, about};
+use tressfx_core::strands::{StrandOptions, Strands, relative_to};
 use tressfx_core::view::Pose;
 use tressfx_sim::step::Step;
 use tressfx_sim::{CapsuleMotion, Collider, HairSim, SectionDesc, SimParams, Stage, StepInput, StepReport, Wind};
@@ -100,7 +100,7 @@ impl Rig {
 
     /// Rest pose of the guides of a section about the centre of the groom, strand-major.
     pub fn rest(&self, section: usize) -> Vec<Vec4> {
-        about(self.sim.center(), &self.strands[section].rest)
+        relative_to(self.sim.center(), &self.strands[section].rest)
     }
 
     /// Its capsules as kernels see them: about the centre of the groom, and still as the head sees them.

@@ -5,7 +5,7 @@ mod support;
 use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{Strands, about};
+use tressfx_core::strands::{Strands, relative_to};
 use tressfx_sim::{ClockParams, Collider, SectionDesc, SimParams, metrics, reference};
 
 use support::rig;
@@ -220,7 +220,7 @@ fn references_agree_on_what_a_frame_is() {
     let motion = Motion::still(&strands);
     let report = reference.step(&motion.input(0.0, 0.0)).unwrap();
     assert!(report.reset && report.sub_steps == 0);
-    let rest = wide(&about(strands.guide_bounds().coarse_center(), &strands.rest_of_all()));
+    let rest = wide(&relative_to(strands.guide_bounds().coarse_center(), &strands.rest_of_all()));
     let error = reference.positions(0).iter().zip(rest).map(|(one, other)| one.distance(other)).fold(0.0, f64::max);
     assert!(error < 1e-7, "{error}");
 }

@@ -41,17 +41,17 @@ impl<'a> Bytes<'a> {
         Err(self.error(field, offset, AssetProblem::out_of_range(value, "a finite number")))
     }
 
-    /// An array of `count` entries of `N` finite floats each. The owner finds the strand to blame for a value.
+    /// An array of `count` entries of `N` finite floats each. The domain says which strand and vertex an error names.
     pub(crate) fn floats<const N: usize>(
         self,
         field: &str,
         offset: usize,
         count: usize,
-        owner: Domain<'_>,
+        domain: Domain<'_>,
     ) -> Result<Vec<[f32; N]>, FileError> {
         let bytes = self.slice(field, offset, count as u64, 4 * N as u64)?;
         let values: Vec<[f32; N]> = bytes.chunks_exact(4 * N).map(entry).collect();
-        match owner.find_not_finite(values.as_flattened(), N) {
+        match domain.find_not_finite(values.as_flattened(), N) {
             None => Ok(values),
             Some((index, kind)) => Err(self.error(field, offset + 4 * index, kind)),
         }
@@ -68,7 +68,7 @@ impl<'a> Bytes<'a> {
 }
 
 /// An optional array that a header names by its offset, where 0 means that it is absent.
-pub(crate) struct Array {
+pub(crate) struct OptionalArray {
     /// The name of the header's field.
     pub(crate) field: &'static str,
     /// Where the header keeps the offset.
@@ -77,7 +77,7 @@ pub(crate) struct Array {
     pub(crate) header: usize,
 }
 
-impl Array {
+impl OptionalArray {
     /// The offset of the array, if it is present.
     pub(crate) fn offset(&self, bytes: Bytes<'_>) -> Result<Option<usize>, FileError> {
         match bytes.u32(self.field, self.at)? as usize {
@@ -96,9 +96,9 @@ impl Array {
         &self,
         bytes: Bytes<'_>,
         count: usize,
-        owner: Domain<'_>,
+        domain: Domain<'_>,
     ) -> Result<Option<Vec<[f32; N]>>, FileError> {
-        self.offset(bytes)?.map(|offset| bytes.floats(self.field, offset, count, owner)).transpose()
+        self.offset(bytes)?.map(|offset| bytes.floats(self.field, offset, count, domain)).transpose()
     }
 }
 

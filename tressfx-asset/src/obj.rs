@@ -5,7 +5,7 @@
 //! the order in which the elements first touch them. Everything else in the file (faces, normals, colours, texture
 //! coordinates, names) is not hair and is passed over.
 //!
-//! An own reader, because the crate `tobj`, which [`crate::mesh`] uses, gives no place in the file with its errors.
+//! The crate `tobj`, which [`crate::mesh`] uses, is not used here, because its errors give no place in the file.
 
 use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset};
 

@@ -1,4 +1,4 @@
-//! What `tressfx info` says about an asset.
+//! Counts, lengths and bounds of an asset, and what is unusual about it: what `tressfx info` prints.
 
 use glam::DVec3;
 use serde::Serialize;

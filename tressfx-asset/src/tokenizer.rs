@@ -1,4 +1,4 @@
-//! Reading text files: lines and words that know where they are.
+//! Splitting text files into lines and words, each with its place in the file.
 
 use std::str::FromStr;
 
@@ -123,7 +123,7 @@ impl<'a> Words<'a> {
         Err(place.error(self.name, field, AssetProblem::out_of_range(value, "a finite number")))
     }
 
-    /// Takes three numbers, finite or not: the caller knows whom to blame.
+    /// Takes three numbers, finite or not: the caller checks them, and names the vertex in its error.
     pub(crate) fn vector(&mut self, field: &str) -> Result<[f32; 3], FileError> {
         let expected = "a number";
         Ok([self.number(field, expected)?, self.number(field, expected)?, self.number(field, expected)?])

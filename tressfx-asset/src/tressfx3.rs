@@ -23,19 +23,19 @@ use std::ops::Range;
 
 use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset};
 
-use crate::binary::{Array, Bytes, scalars};
+use crate::binary::{Bytes, OptionalArray, scalars};
 use crate::{FileError, tressfx4};
 
 /// The versions that have this header.
 pub(crate) const VERSIONS: Range<f32> = 3.0..4.0;
 const HEADER: usize = 296;
 
-const VERTICES: Array = Array { field: "verticesOffset", at: 144, header: HEADER };
-const STRAND_THICKNESS: Array = Array { field: "strandThicknessOffset", at: 148, header: HEADER };
-const STRAND_UV: Array = Array { field: "strandUVOffset", at: 152, header: HEADER };
-const VERTEX_COLOUR: Array = Array { field: "vertexColorOffset", at: 156, header: HEADER };
-const GUIDE_INDEX: Array = Array { field: "guideIndexOffset", at: 160, header: HEADER };
-const VERTEX_UV: Array = Array { field: "vertexUVOffset", at: 164, header: HEADER };
+const VERTICES: OptionalArray = OptionalArray { field: "verticesOffset", at: 144, header: HEADER };
+const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "strandThicknessOffset", at: 148, header: HEADER };
+const STRAND_UV: OptionalArray = OptionalArray { field: "strandUVOffset", at: 152, header: HEADER };
+const VERTEX_COLOUR: OptionalArray = OptionalArray { field: "vertexColorOffset", at: 156, header: HEADER };
+const GUIDE_INDEX: OptionalArray = OptionalArray { field: "guideIndexOffset", at: 160, header: HEADER };
+const VERTEX_UV: OptionalArray = OptionalArray { field: "vertexUVOffset", at: 164, header: HEADER };
 
 /// Reads a 3.x file.
 ///
@@ -58,8 +58,8 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let counts = tressfx4::counts(bytes, ["numGuideStrands", "vertsPerStrand"], offset, 12)?;
     let strands = counts.len();
     let vertices = strands * counts[0] as usize;
-    let owner = Domain::Vertex(&counts);
-    let points = bytes.floats("vertices", offset, vertices, owner)?;
+    let domain = Domain::Vertex(&counts);
+    let points = bytes.floats("vertices", offset, vertices, domain)?;
     let guide_index = GUIDE_INDEX.offset(bytes)?;
     Ok(HairAsset {
         version: Some(version),
@@ -67,9 +67,9 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
         both_ends_immovable: bytes.u32("bothEndsImmovable", 16)? != 0,
         strand_thickness: STRAND_THICKNESS.floats(bytes, strands, Domain::Strand)?.map(scalars),
         strand_uvs: STRAND_UV.floats(bytes, strands, Domain::Strand)?,
-        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, owner)?,
+        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, domain)?,
         guide_index: guide_index.map(|offset| bytes.u32s(GUIDE_INDEX.field, offset, strands)).transpose()?,
-        vertex_uvs: VERTEX_UV.floats(bytes, vertices, owner)?,
+        vertex_uvs: VERTEX_UV.floats(bytes, vertices, domain)?,
         ..HairAsset::new(name, AssetFormat::TressFx3, points, counts)
     })
 }

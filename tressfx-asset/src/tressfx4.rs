@@ -19,7 +19,7 @@ use std::ops::Range;
 
 use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, MAX_VERTICES, MIN_VERTICES};
 
-use crate::binary::{Array, Bytes, scalars};
+use crate::binary::{Bytes, OptionalArray, scalars};
 use crate::{FileError, FileErrorKind};
 
 /// The versions that have this header.
@@ -27,11 +27,11 @@ pub(crate) const VERSIONS: Range<f32> = 4.0..5.0;
 const HEADER: usize = 160;
 const VERSION: f32 = 4.0;
 
-const POSITION: Array = Array { field: "offsetPosition", at: 12, header: HEADER };
-const STRAND_UV: Array = Array { field: "offsetStrandUV", at: 16, header: HEADER };
-const VERTEX_UV: Array = Array { field: "offsetVertexUV", at: 20, header: HEADER };
-const STRAND_THICKNESS: Array = Array { field: "offsetStrandThickness", at: 24, header: HEADER };
-const VERTEX_COLOUR: Array = Array { field: "offsetVertexColor", at: 28, header: HEADER };
+const POSITION: OptionalArray = OptionalArray { field: "offsetPosition", at: 12, header: HEADER };
+const STRAND_UV: OptionalArray = OptionalArray { field: "offsetStrandUV", at: 16, header: HEADER };
+const VERTEX_UV: OptionalArray = OptionalArray { field: "offsetVertexUV", at: 20, header: HEADER };
+const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "offsetStrandThickness", at: 24, header: HEADER };
+const VERTEX_COLOUR: OptionalArray = OptionalArray { field: "offsetVertexColor", at: 28, header: HEADER };
 
 /// Reads a 4.x file.
 ///
@@ -55,14 +55,14 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let strands = counts.len();
     let vertices = strands * counts[0] as usize;
     let (points, inverse_mass) = positions(bytes, offset, vertices, Domain::Vertex(&counts))?;
-    let owner = Domain::Vertex(&counts);
+    let domain = Domain::Vertex(&counts);
     Ok(HairAsset {
         version: Some(version),
         inverse_mass: Some(inverse_mass),
         strand_uvs: STRAND_UV.floats(bytes, strands, Domain::Strand)?,
-        vertex_uvs: VERTEX_UV.floats(bytes, vertices, owner)?,
+        vertex_uvs: VERTEX_UV.floats(bytes, vertices, domain)?,
         strand_thickness: STRAND_THICKNESS.floats(bytes, strands, Domain::Strand)?.map(scalars),
-        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, owner)?,
+        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, domain)?,
         ..HairAsset::new(name, AssetFormat::TressFx4, points, counts)
     })
 }
@@ -91,9 +91,9 @@ fn positions(
     bytes: Bytes<'_>,
     offset: usize,
     vertices: usize,
-    owner: Domain<'_>,
+    domain: Domain<'_>,
 ) -> Result<(Vec<[f32; 3]>, Vec<f32>), FileError> {
-    let values = bytes.floats::<4>("positions", offset, vertices, owner)?;
+    let values = bytes.floats::<4>("positions", offset, vertices, domain)?;
     if let Some(index) = values.iter().position(|value| value[3] < 0.0) {
         let kind = AssetProblem::out_of_range(values[index][3], "0 or more");
         return Err(bytes.error("inverse mass", offset + 16 * index + 12, kind));
@@ -149,7 +149,12 @@ fn uniform_count(asset: &HairAsset) -> Result<u32, FileError> {
 }
 
 /// Appends an array and writes its offset into the header.
-fn append(out: &mut Vec<u8>, asset: &HairAsset, array: &Array, values: Option<&[f32]>) -> Result<(), FileError> {
+fn append(
+    out: &mut Vec<u8>,
+    asset: &HairAsset,
+    array: &OptionalArray,
+    values: Option<&[f32]>,
+) -> Result<(), FileError> {
     let Some(values) = values else { return Ok(()) };
     let offset = u32::try_from(out.len())
         .map_err(|_| FileError::new(&asset.name, array.field, AssetProblem::out_of_range(out.len(), "below 2^32")))?;

@@ -6,7 +6,7 @@ use crate::backend::{Backend, BufferDesc, Owner};
 use crate::error::Result;
 use crate::id::BufferId;
 use crate::pass::PassList;
-use crate::strands::{Strands, about};
+use crate::strands::{Strands, relative_to};
 
 /// How many strands of how many vertices a section has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl StrandShape {
 pub struct StrandBuffers {
     /// The counts.
     pub shape: StrandShape,
-    /// The point of the rest pose that positions are about, see [`Bounds::coarse_center`](crate::strands::Bounds::coarse_center).
+    /// The point of the rest pose that positions are relative to, see [`Bounds::coarse_center`](crate::strands::Bounds::coarse_center).
     pub center: Vec3,
     /// `vec4<f32>` a vertex of every strand: position about the centre in the unit of the file, inverse mass.
     pub positions: BufferId,
@@ -104,7 +104,7 @@ impl StrandBuffers {
     /// Puts the rest pose into the buffers.
     pub fn upload(&self, list: &mut PassList, strands: &Strands) {
         let copies = 1 + strands.follows as usize;
-        list.upload(self.positions, 0, &strands.interleave(&about(self.center, &strands.rest_of_all())));
+        list.upload(self.positions, 0, &strands.interleave(&relative_to(self.center, &strands.rest_of_all())));
         list.upload(self.tangents, 0, &strands.interleave(&strands.tangents.repeat(copies)));
         list.upload(self.thickness, 0, &strands.interleave(&strands.thickness));
     }

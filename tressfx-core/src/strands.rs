@@ -23,7 +23,7 @@ use crate::asset::HairAsset;
 use resample::Strand;
 
 pub use bounds::Bounds;
-pub use center::about;
+pub use center::relative_to;
 pub use error::StrandsError;
 pub use options::{MAX_FOLLOWS, StrandOptions};
 pub use units::metres_per_unit;

@@ -9,7 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_core::strands::{Strands, about};
+use tressfx_core::strands::{Strands, relative_to};
 use tressfx_core::view::Pose;
 
 use crate::collider::{GpuCapsule, GpuCapsuleMotion};
@@ -104,7 +104,7 @@ impl SectionBuffers {
 
     /// Uploads the rest pose.
     pub(crate) fn upload(&self, list: &mut PassList, strands: &Strands) {
-        list.upload(self.rest, 0, &strands.interleave(&about(self.strands.center, &strands.rest)));
+        list.upload(self.rest, 0, &strands.interleave(&relative_to(self.strands.center, &strands.rest)));
         list.upload(self.rest_lengths, 0, &strands.interleave(&strands.rest_lengths));
         list.upload(self.strands.thickness, 0, &strands.interleave(&strands.thickness));
         if let Some(buffer) = self.follow_offsets {

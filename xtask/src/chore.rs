@@ -91,6 +91,10 @@ pub(crate) fn test() -> Result<(), String> {
     compilers::ensure()?;
     println!("cargo test --workspace");
     run(cargo(&["test", "--workspace", "--quiet"]).env("TRESSFX_SHADER_COMPILERS", "required"))?;
+    // Tests that read real grooms are ignored unless the grooms are there.
+    if std::env::var_os("TRESSFX_ASSETS").is_some() {
+        step(&["test", "--workspace", "--tests", "--quiet", "--", "--ignored"])?;
+    }
     println!("cargo doc --workspace --no-deps");
     run(cargo(&["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "--deny warnings"))
 }

@@ -42,10 +42,10 @@ impl HairAsset {
     /// The first array or value that does not fit.
     pub fn check(&self) -> Result<(), AssetError> {
         self.check_counts()?;
-        for (field, values, width, owner) in self.float_arrays() {
+        for (field, values, width, domain) in self.float_arrays() {
             let Some(values) = values else { continue };
-            self.check_length(field, owner, values.len() / width)?;
-            if let Some((_, kind)) = owner.find_not_finite(values, width) {
+            self.check_length(field, domain, values.len() / width)?;
+            if let Some((_, kind)) = domain.find_not_finite(values, width) {
                 return Err(self.error(field, kind));
             }
         }
@@ -89,8 +89,8 @@ impl HairAsset {
         ]
     }
 
-    fn check_length(&self, field: &str, owner: Domain<'_>, found: usize) -> Result<(), AssetError> {
-        let (needed, of) = match owner {
+    fn check_length(&self, field: &str, domain: Domain<'_>, found: usize) -> Result<(), AssetError> {
+        let (needed, of) = match domain {
             Domain::Strand => (self.counts.len(), "strands are there"),
             Domain::Vertex(_) => (self.points.len(), "points are there"),
         };
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_blamed_on_strand_and_vertex() {
+    fn errors_name_strand_and_vertex() {
         let mut broken = asset();
         broken.points[4][1] = f32::INFINITY;
         assert_eq!(

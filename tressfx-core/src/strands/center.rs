@@ -1,18 +1,19 @@
-//! The centre of a groom: positions on the GPU are about it, wherever the head is.
+//! The centre of a groom: positions on the GPU are relative to it, wherever the head is.
 //!
 //! Grooms are modelled on characters that stand on their origin, so that hair lies a metre and more away from it, and
-//! characters walk. Rounding is absolute: about its own centre a groom has all bits for itself.
+//! characters walk. The larger a coordinate, the coarser its rounding: relative to the centre, coordinates are as small as the
+//! groom.
 
 use glam::{Vec3, Vec4};
 
 use super::Bounds;
 
-/// Steps of the grid of centres in a radius of the groom, at least. Coordinates that are larger than the groom lose no bit when
-/// a point of such a grid is taken away; smaller ones are rounded as finely as anything in the groom.
+/// The centre is rounded to a grid with at least this many steps in the radius of the groom. Subtracting such a point from
+/// coordinates that are larger than the groom loses no bit; smaller ones are rounded as finely as anything in the groom.
 const STEPS: f32 = 64.0;
 
 impl Bounds {
-    /// The point that the positions of a groom with these bounds are about: the centre, on a coarse grid.
+    /// The point that the positions of a groom with these bounds are relative to: the centre, rounded to a coarse grid.
     pub fn coarse_center(&self) -> Vec3 {
         let step = (self.radius() / STEPS).log2().floor().exp2();
         let center = self.center();
@@ -20,8 +21,8 @@ impl Bounds {
     }
 }
 
-/// Points of the rest pose about a centre; what is in `w` stays.
-pub fn about(center: Vec3, points: &[Vec4]) -> Vec<Vec4> {
+/// Points of the rest pose relative to a centre; `w` stays.
+pub fn relative_to(center: Vec3, points: &[Vec4]) -> Vec<Vec4> {
     points.iter().map(|&point| point - center.extend(0.0)).collect()
 }
 
@@ -30,18 +31,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_lost_about_the_centre() {
+    fn nothing_is_lost_relative_to_the_centre() {
         let point = |i: u32| {
             let x = i as f32;
             Vec4::new(1.6 + 0.1 * (1.3 * x).sin(), 0.12 * (0.7 * x).cos(), -0.07 + 0.09 * (2.1 * x).sin(), 1.0)
         };
         let points: Vec<Vec4> = (0..1000).map(point).collect();
         let center = Bounds::of(points.iter().map(|point| point.truncate())).coarse_center();
-        for (point, about) in points.iter().zip(about(center, &points)) {
-            let lost = about.as_dvec4() - (point.as_dvec4() - center.extend(0.0).as_dvec4());
+        for (point, relative) in points.iter().zip(relative_to(center, &points)) {
+            let lost = relative.as_dvec4() - (point.as_dvec4() - center.extend(0.0).as_dvec4());
             assert_eq!((lost.x, lost.w), (0.0, 0.0), "{point}");
             assert!(lost.abs().max_element() <= f64::from(f32::EPSILON) / 16.0, "{point} {lost}");
-            assert!(about.truncate().length() < 0.25, "{about}");
+            assert!(relative.truncate().length() < 0.25, "{relative}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{Bounds, Strands, about};
+use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
 use super::{
@@ -139,7 +139,7 @@ impl<'a> Section<'a> {
         let roots = if desc.own_roots { strands.guides as usize } else { 0 };
         Self {
             strands,
-            rest: about(center, &strands.rest),
+            rest: relative_to(center, &strands.rest),
             params: desc.params.clone(),
             info,
             step: Step::reset(&desc.params, &info, Quat::IDENTITY),
