@@ -55,12 +55,13 @@ pub(crate) async fn open(wanted: Option<&str>) -> Result<(wgpu::Device, wgpu::Qu
     opened.map_err(|error| Error::NoAdapter { message: format!("{} could not be opened: {error}", names[index]) })
 }
 
-/// WebGPU's default limits, and more memory where the adapter has it.
+/// WebGPU's default limits, and more memory and wider targets where the adapter has them.
 fn limits(offered: &Limits) -> Limits {
     Limits {
         max_buffer_size: offered.max_buffer_size,
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
         max_texture_dimension_2d: offered.max_texture_dimension_2d,
+        max_color_attachment_bytes_per_sample: offered.max_color_attachment_bytes_per_sample,
         ..Limits::defaults()
     }
     .or_worse_values_from(offered)
@@ -95,7 +96,8 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     caps.binding_alignment = alignments.into_iter().max().unwrap_or(1).max(1).into();
     caps.max_buffer_bytes = limits.max_buffer_size;
     caps.max_texture_edge = limits.max_texture_dimension_2d;
-    caps.max_color_targets = limits.max_color_attachments;
+    // WebGPU counts bytes as well: each format of the contract takes 8 at most.
+    caps.max_color_targets = limits.max_color_attachments.min(limits.max_color_attachment_bytes_per_sample / 8);
     caps.max_group_threads = limits.max_compute_invocations_per_workgroup;
     caps.max_group_size =
         [limits.max_compute_workgroup_size_x, limits.max_compute_workgroup_size_y, limits.max_compute_workgroup_size_z];

@@ -53,8 +53,6 @@ pub struct WgpuBackend {
     uploads: uploads::Belt,
     reads: reads::Reads,
     timer: timer::Timer,
-    /// Bytes that a raster pass can write for a pixel.
-    target_bytes: u32,
 }
 
 impl WgpuBackend {
@@ -71,7 +69,6 @@ impl WgpuBackend {
             uploads: uploads::Belt::default(),
             reads: reads::Reads::default(),
             timer: timer::Timer::new(&device, &queue),
-            target_bytes: device.limits().max_color_attachment_bytes_per_sample,
             device,
             queue,
         }

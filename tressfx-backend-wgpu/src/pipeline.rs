@@ -46,8 +46,6 @@ impl WgpuBackend {
     pub(crate) fn make_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline> {
         desc.check(self.catalog.caps())?;
         let shader = &desc.shader;
-        let targets: Vec<_> = desc.targets.iter().map(|&(format, _)| format).collect();
-        self.fits_targets(shader.label, &targets)?;
         let vertex = &shader.entry_point(ShaderStage::Vertex)?.name;
         let fragment = match shader.has_fragment_stage() {
             true => Some(&shader.entry_point(ShaderStage::Fragment)?.name),

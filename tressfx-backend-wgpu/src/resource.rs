@@ -22,7 +22,7 @@ impl WgpuBackend {
     /// [`Error::Rule`] if its size is not a multiple of 4, or 0.
     pub fn import_buffer(&mut self, label: Label, buffer: wgpu::Buffer) -> Result<BufferId> {
         let bytes = buffer.size();
-        if bytes == 0 || bytes % 4 != 0 {
+        if bytes == 0 || !bytes.is_multiple_of(4) {
             return Err(Error::rule(label, format!("{bytes} bytes: a multiple of 4, at least 4, is")));
         }
         let desc = BufferDesc::new(label, bytes, buffer_uses(buffer.usage()));

@@ -159,6 +159,7 @@ mod tests {
             let theirs = texture_format(ours).unwrap();
             assert_eq!(format(theirs), Some(ours));
             assert_eq!(theirs.block_copy_size(None), Some(ours.bytes()), "{ours:?}");
+            assert!(theirs.target_pixel_byte_cost().unwrap_or(0) <= 8, "{ours:?}: the caps count on it");
         }
     }
 

@@ -33,7 +33,7 @@ pub struct Caps {
     pub max_buffer_bytes: u64,
     /// Texels along an edge of a texture.
     pub max_texture_edge: u32,
-    /// Colour targets of a raster pass.
+    /// Colour targets of a raster pass, of whatever formats.
     pub max_color_targets: u32,
     /// Threads of a compute group.
     pub max_group_threads: u32,
@@ -62,7 +62,8 @@ impl Caps {
             binding_alignment: 256,
             max_buffer_bytes: 256 << 20,
             max_texture_edge: 8192,
-            max_color_targets: 8,
+            // Eight, but of 32 bytes for a pixel, and there are formats that take 8.
+            max_color_targets: 4,
             max_group_threads: 256,
             max_group_size: [256, 256, 64],
             max_group_memory_bytes: 16 << 10,
