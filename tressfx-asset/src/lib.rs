@@ -1,8 +1,8 @@
-//! Grooms from files and from a seed, and the meshes that they grow on.
+//! Grooms (hair of a character) from files or generated from a seed, and the meshes that the hair grows on.
 //!
-//! [`read`] tells the format by the content of a file, never by its name, and gives one
-//! [`HairAsset`], whatever the format. Nothing that a known format stores is lost on the way in.
-//! The crate uses no GPU: `tressfx_core::strands::Strands` prepares an asset for one.
+//! [`read`] recognises the format by the content of a file, never by its name, and gives a [`HairAsset`], whatever the
+//! format. The page of each format's module says what of a file is not kept.
+//! The crate uses no GPU: `tressfx_core::strands::Strands` prepares an asset for the GPU.
 
 #![forbid(unsafe_code)]
 
@@ -31,7 +31,7 @@ pub use write::{WriteFormat, dropped_by, write};
 /// Reads a groom file of any format that [`read_bytes`] knows.
 ///
 /// # Errors
-/// As [`read_bytes`], or where the file cannot be read.
+/// Those of [`read_bytes`], and if the file cannot be read.
 pub fn read(path: impl AsRef<Path>) -> Result<HairAsset, FileError> {
     let path = path.as_ref();
     let name = path.display().to_string();
@@ -39,7 +39,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<HairAsset, FileError> {
     read_bytes(&name, &bytes)
 }
 
-/// Reads a groom from memory; `name` is what messages call it. The content alone tells the format.
+/// Reads a groom from memory; `name` stands for it in messages. The format is recognised by the content.
 ///
 /// # Errors
 /// Where the format is unknown, or the content contradicts itself, is cut off, or holds a value that is not finite.

@@ -1,9 +1,11 @@
-//! Recordings that the GPU may still be busy with, and what waits for it.
+//! Recordings that the GPU may still execute, and what is freed after them.
 //!
-//! Each recording ends by setting an event, which the CPU can ask for at any time: so nobody has to tell the backend when
-//! a frame begins or how many are in flight. The event tells that bytes have come back. It does not tell that the command
-//! buffer is over, and until then Vulkan lets nobody destroy what it names: that an engine tells with
-//! [`VulkanBackend::retire`], or with [`VulkanBackend::discard`] where it throws a command buffer away.
+//! A recording is one list in a command buffer; a command buffer can hold several. Each recording ends by setting an event,
+//! whose state the CPU can read at any time. So nobody has to tell the backend when a frame begins or how many frames are in
+//! flight. When the event is set, the recording has run, and the bytes of its read-backs are there. But the command buffer
+//! may still be executing, and Vulkan forbids to destroy anything that it names. The engine tells the end of the command
+//! buffer with [`VulkanBackend::retire`], or with [`VulkanBackend::discard`] that it was thrown away. In this module "has
+//! run" means that the event is set, and "is over" that the engine has told the end.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -20,10 +22,11 @@ use crate::resource::{Buffer, Texture};
 use crate::sets::{Set, Sets};
 use crate::timer::Queries;
 
-/// An upload buffer of so many bytes is kept for the next list. A larger one is for a groom on its way, which comes once.
-const KEPT_BYTES: u64 = 1 << 20;
+/// An upload buffer of up to this many bytes is kept for the next list. A larger one has held a new groom, which is uploaded
+/// only once, and is freed.
+const MAX_KEPT_BYTES: u64 = 1 << 20;
 
-/// What is freed once the GPU cannot use it any more.
+/// Something that is freed once the GPU cannot use it any more.
 #[derive(Debug)]
 pub(crate) enum Garbage {
     Buffer(Buffer),
@@ -48,21 +51,21 @@ impl Garbage {
 /// What one recorded list needs until it has run.
 #[derive(Debug)]
 pub(crate) struct Recording {
-    /// Counts recordings.
+    /// How many recordings were made up to this one.
     pub(crate) number: u64,
-    /// Set once it has run.
+    /// The GPU sets it when it has run.
     event: vk::Event,
     has_run: bool,
-    /// The bytes of its uploads; kept for the next list, if they are few.
+    /// The buffer with the bytes of its uploads; if it is small it is kept for the next list.
     pub(crate) uploads: Option<HostBuffer>,
     pub(crate) queries: Queries,
-    /// What it fills with zeros before their first use.
+    /// The resources that it fills with zeros before their first use.
     pub(crate) zeroed: Vec<Resource>,
     /// The read-backs that it makes.
     pub(crate) tickets: Vec<Ticket>,
-    /// What it has changed about hazards.
+    /// Takes its changes to the hazards back.
     pub(crate) undo: Undo,
-    /// What was thrown away while this was the newest recording.
+    /// What was destroyed while this was the newest recording: it is freed when this one is over.
     garbage: Vec<Garbage>,
     /// The resources among it.
     pub(crate) forgotten: Vec<Resource>,
@@ -87,7 +90,7 @@ impl Recording {
         })
     }
 
-    /// Writes what tells the CPU that everything before it has run.
+    /// Writes the command that sets the event after everything before it has run.
     pub(crate) fn end(&self, gpu: &Gpu, commands: vk::CommandBuffer) {
         // SAFETY: the command buffer is being recorded, outside of a render pass, and the event is not in use.
         unsafe { gpu.device.cmd_set_event(commands, self.event, vk::PipelineStageFlags::ALL_COMMANDS) };
@@ -123,7 +126,7 @@ pub(crate) struct Frames {
 }
 
 impl Frames {
-    /// A recording to write to. It does not count before it is [added](Self::add).
+    /// A new recording. It gets its number now and counts as recorded once it is [added](Self::add).
     pub(crate) fn begin(&mut self, gpu: &Gpu) -> Result<Recording> {
         let mut recording = self.idle.pop().map_or_else(|| Recording::new(gpu), Ok)?;
         recording.number = self.recorded + 1;
@@ -147,22 +150,24 @@ impl Frames {
         recording.is_none_or(|recording| recording.has_run(gpu))
     }
 
-    /// Takes the oldest recording out, if it is one of the first `number`.
+    /// Takes the oldest recording out, if its number is at most `number`.
     pub(crate) fn take_oldest(&mut self, number: u64) -> Option<Recording> {
         self.in_flight.pop_front_if(|oldest| oldest.number <= number)
     }
 
-    /// Takes the newest recording out, if it is none of the first `number`.
+    /// Takes the newest recording out, if its number is larger than `number`.
     pub(crate) fn take_newest(&mut self, number: u64) -> Option<Recording> {
         self.in_flight.pop_back_if(|newest| newest.number > number)
     }
 
-    /// The newest recording, where the first `number` are over and this one among them, and it has not run: so it never will.
+    /// Takes the newest recording out, if the engine says that it is over (its number is at most `number`) but it has not
+    /// run: then it never will.
     pub(crate) fn take_never_run(&mut self, gpu: &Gpu, number: u64) -> Option<Recording> {
         self.in_flight.pop_back_if(|newest| newest.number <= number && !newest.has_run(gpu))
     }
 
-    /// Forgets resources that no list can name any more.
+    /// Takes resources that no list can name any more out of what recordings fill with zeros, and notes that the newest
+    /// recording may still use them.
     pub(crate) fn forget(&mut self, gone: &HashSet<Resource>) {
         for recording in &mut self.in_flight {
             recording.zeroed.retain(|resource| !gone.contains(resource));
@@ -172,7 +177,7 @@ impl Frames {
         }
     }
 
-    /// Whether a resource that no list can name any more waits for recordings.
+    /// Whether a resource that no list can name any more is still kept for a recording in flight.
     pub(crate) fn holds(&self, resource: Resource) -> bool {
         self.in_flight.iter().any(|recording| recording.forgotten.contains(&resource))
     }
@@ -185,13 +190,13 @@ impl Frames {
         }
     }
 
-    /// A recording is over, and all that are older: what has waited for it is destroyed.
+    /// This recording and all older ones are over: what was kept for it is freed.
     pub(crate) fn finish(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
         recording.garbage.drain(..).for_each(|garbage| garbage.destroy(gpu, sets));
         self.reuse(gpu, sets, recording);
     }
 
-    /// The newest recording will never run. What has waited for it waits for those that are older.
+    /// The newest recording will never run. What was kept for it is now kept for the recording before it.
     pub(crate) fn take_back(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
         for garbage in std::mem::take(&mut recording.garbage) {
             self.throw_away(gpu, sets, garbage);
@@ -202,13 +207,13 @@ impl Frames {
         self.reuse(gpu, sets, recording);
     }
 
-    /// Makes a recording ready for its next use: one that is over, or was never written.
+    /// Makes a recording ready for its next use. It is over, was taken back, or was never added.
     pub(crate) fn reuse(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
         recording.zeroed.clear();
         recording.tickets.clear();
         recording.forgotten.clear();
         recording.undo = Undo::default();
-        let large = recording.uploads.take_if(|uploads| uploads.bytes > KEPT_BYTES);
+        let large = recording.uploads.take_if(|uploads| uploads.bytes > MAX_KEPT_BYTES);
         large.into_iter().for_each(|uploads| gpu.free_host(uploads));
         recording.has_run = false;
         // SAFETY: nothing sets the event any more.

@@ -1,20 +1,23 @@
-//! Runs TressFX passes on raw Vulkan 1.3: synchronization2 and dynamic rendering, and SPIR-V from the naga module of each shader.
+//! Runs TressFX passes on raw Vulkan 1.3. It uses synchronization2 and dynamic rendering, and naga writes the SPIR-V of the
+//! shaders.
 //!
 //! # Promises
 //!
-//! * [`record`](tressfx_core::backend::Record::record) never submits, waits or keeps the command buffer. It is called outside of a render pass and leaves
-//!   pipelines, descriptor sets, viewport and scissor changed.
-//! * Barriers come from the hazards of `tressfx-core`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
-//!   earlier one, none before one that does not.
-//! * Imported buffers and textures are never destroyed here; `destroy` only forgets them. After each recording they are in
-//!   the use that was promised when they were imported, if it named them; else they are as it found them.
-//! * On an engine's device nothing is ever waited for, but by [`run`](tressfx_core::backend::Run::run). What is destroyed while the GPU may still
-//!   use it is freed once the engine says that the command buffers that may name it are over:
-//!   [`retire`](VulkanBackend::retire), once a frame.
-//! * A recording that is thrown away leaves everything as it was before it: [`discard`](VulkanBackend::discard).
-//! * Nothing is put between two threads: a backend is used by one at a time, and so is its queue.
+//! * [`record`](tressfx_core::backend::Record::record) never submits, waits or keeps the command buffer. Call it outside of
+//!   a render pass. It changes the bound pipelines and descriptor sets, the viewport and the scissor, and does not restore
+//!   them.
+//! * Barriers come from `tressfx_core::hazards`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
+//!   earlier one, and no barrier before other commands.
+//! * Imported buffers and textures are never destroyed here; `destroy` only stops tracking them. A recording that uses one
+//!   leaves it in the layout and use that were agreed when it was imported; a recording that does not use it does not touch
+//!   it.
+//! * On an engine's device only [`run`](tressfx_core::backend::Run::run) waits. A resource that is destroyed while the GPU
+//!   may still use it is freed once the engine has said that the command buffers that may name it have finished: it calls
+//!   [`retire`](VulkanBackend::retire) once a frame.
+//! * If the engine throws a command buffer away, [`discard`](VulkanBackend::discard) takes back what was recorded into it.
+//! * There is no lock inside: one thread at a time may use a backend, and one at a time its queue.
 //!
-//! It decides nothing about hair and does not know what a window is.
+//! The crate decides nothing about hair and opens no window.
 
 mod barrier;
 mod cache;
@@ -49,10 +52,10 @@ use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shader::{Kernel, RasterPipeline};
 
-/// The ash that this backend is built against.
+/// The version of the crate `ash` that this backend is built with.
 pub use ash;
 pub use device::{Enabled, VulkanDesc, VulkanOptions};
-/// The allocator that this backend is built against.
+/// The version of the crate `gpu-allocator` that this backend is built with.
 pub use gpu_allocator;
 pub use instance::adapters;
 pub use label::{Alone, alone};
@@ -72,7 +75,7 @@ pub struct VulkanBackend {
     timer: timer::Timer,
     runner: Option<run::Runner>,
     cache: cache::Cache,
-    /// The last to go: everything above lives on it.
+    /// Freed last: everything above is made on its device.
     gpu: device::Gpu,
 }
 
@@ -80,10 +83,10 @@ impl VulkanBackend {
     /// A backend on an engine's device.
     ///
     /// # Safety
-    /// * Instance, adapter, device, queue and allocator belong together and outlive the backend; the device is of Vulkan 1.3,
-    ///   with `synchronization2`, `dynamicRendering` and what `enabled` says.
+    /// * Instance, adapter, device, queue and allocator belong together and outlive the backend; the device is a Vulkan 1.3
+    ///   device with `synchronization2`, `dynamicRendering` and the features that `enabled` lists.
     /// * The queue is used by one thread at a time: [`run`](Run::run) submits to it.
-    /// * When the backend is dropped, everything that was recorded has run or never will: it waits for nothing.
+    /// * When the backend is dropped, everything that was recorded has run, or never will run: the backend does not wait.
     pub unsafe fn new(desc: VulkanDesc) -> Self {
         let path = desc.pipeline_cache.clone();
         // SAFETY: as promised.
@@ -101,7 +104,7 @@ impl VulkanBackend {
     /// As [`headless`](Self::headless), with options.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`] with what there is and what to install.
+    /// [`Error::NoAdapter`] with the adapters that were found and what to install.
     pub fn open(options: &VulkanOptions) -> Result<Self> {
         Ok(Self::on(device::Gpu::open(options)?, options.pipeline_cache.clone()))
     }
@@ -126,12 +129,12 @@ impl VulkanBackend {
         &self.gpu.device
     }
 
-    /// The family of the queue that recorded command buffers go to.
+    /// The queue family that command buffers have to be submitted to.
     pub fn queue_family(&self) -> u32 {
         self.gpu.queue_family
     }
 
-    /// How many `vkCmdPipelineBarrier2` were recorded so far.
+    /// How many `vkCmdPipelineBarrier2` commands were recorded so far.
     pub fn barriers(&self) -> u64 {
         self.tracker.barriers
     }
@@ -142,7 +145,7 @@ impl VulkanBackend {
         self.sets.pools()
     }
 
-    /// Writes the pipeline cache to its file, as dropping the backend does.
+    /// Writes the pipeline cache to its file. This also happens when the backend is dropped.
     ///
     /// # Errors
     /// Whatever the file system or the driver answers.
@@ -150,7 +153,7 @@ impl VulkanBackend {
         self.cache.store(&self.gpu)
     }
 
-    /// What the validation layer has said becomes an error.
+    /// An error if the validation layer has sent messages since the last call.
     fn heard(&self) -> Result<()> {
         let messages = self.gpu.messages();
         let message = messages.join("\n");

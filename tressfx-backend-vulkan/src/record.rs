@@ -1,4 +1,4 @@
-//! Commands of a list become commands of a Vulkan command buffer.
+//! Translates the commands of a list into commands of a Vulkan command buffer.
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -17,7 +17,7 @@ use crate::timer::Timer;
 use crate::tracker::Tracker;
 use crate::{Resources, VulkanBackend};
 
-/// A command buffer of the engine's, which lists can be recorded into.
+/// A command buffer of the engine that lists can be recorded into.
 #[derive(Debug)]
 pub struct Commands {
     buffer: vk::CommandBuffer,
@@ -26,7 +26,7 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// A command buffer that lists are recorded into by `backend`, and by no other.
+    /// Wraps a command buffer. Only `backend` may record into the result.
     ///
     /// # Safety
     /// * It is a primary command buffer of the backend's device and queue family, and until this value is dropped it is being
@@ -81,8 +81,8 @@ impl Record for VulkanBackend {
 }
 
 impl VulkanBackend {
-    /// Everything that can fail, before anything is written: sets, the bytes of uploads, queries, and room for what is read
-    /// back, in the order of its commands.
+    /// Does everything that can fail, before a command is written: makes descriptor sets and queries, copies the bytes of
+    /// uploads, and allocates memory for read-backs. Returns the read-backs in the order of their commands.
     fn prepare(&mut self, list: &PassList, recording: &mut Recording) -> Result<Vec<Copy>> {
         let Self { catalog, sets, timer, gpu, .. } = self;
         for command in list.commands() {
@@ -101,7 +101,7 @@ impl VulkanBackend {
         prepare_uploads(gpu, list.bytes(), recording)?;
         let mut copies = Vec::new();
         for command in list.commands() {
-            match copy(gpu, catalog, command) {
+            match allocate_read_back(gpu, catalog, command) {
                 None => {}
                 Some(Ok(copy)) => copies.push(copy),
                 Some(Err(error)) => {
@@ -127,8 +127,8 @@ fn prepare_uploads(gpu: &Gpu, data: &[u8], recording: &mut Recording) -> Result<
     Ok(())
 }
 
-/// Room for what a command reads back.
-fn copy(gpu: &Gpu, resources: &Resources, command: &Command) -> Option<Result<Copy>> {
+/// Allocates memory for the bytes that a command reads back; `None` for other commands.
+fn allocate_read_back(gpu: &Gpu, resources: &Resources, command: &Command) -> Option<Result<Copy>> {
     let (ticket, bytes) = match *command {
         Command::ReadBuffer { bytes, ticket, .. } => (ticket, bytes),
         Command::ReadTexture { src, ticket } => (ticket, resources.bytes(src.into())),
@@ -138,7 +138,7 @@ fn copy(gpu: &Gpu, resources: &Resources, command: &Command) -> Option<Result<Co
     Some(memory.map(|memory| Copy { ticket, memory, bytes }))
 }
 
-/// Writes one list. Nothing can fail any more: the list was checked, and what it needs is there.
+/// Writes the commands of one list. This cannot fail: the list was checked, and `prepare` has made what it needs.
 pub(crate) struct Recorder<'a> {
     pub(crate) gpu: &'a Gpu,
     pub(crate) resources: &'a Resources,
@@ -164,7 +164,7 @@ impl Recorder<'_> {
         self.recording.end(self.gpu, self.commands);
     }
 
-    /// `copies` are those of the commands from here on.
+    /// `copies` are the read-backs of this command and of those after it.
     fn command<'c>(&mut self, command: &Command, copies: &mut impl Iterator<Item = &'c Copy>) {
         if does_nothing(command) {
             return;
@@ -205,7 +205,7 @@ impl Recorder<'_> {
                 let Some(copy) = copies.next() else { return };
                 self.copy_from_texture(*src, copy.memory.buffer);
             }
-            // The check of the list knows all commands that there are.
+            // `Command` is non-exhaustive, so the compiler asks for this arm. There are no other commands.
             _ => {}
         }
     }
@@ -239,7 +239,7 @@ impl Recorder<'_> {
         vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D { width, height, depth: 1 })
     }
 
-    /// What was made since the last list begins with zeros.
+    /// Fills everything that was made since the last recording with zeros.
     fn zero(&mut self) {
         self.recording.zeroed.append(&mut self.tracker.not_zeroed);
         for &resource in &self.recording.zeroed {
@@ -273,7 +273,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// Names and times a pass.
+    /// Writes a pass with its debug label and its timestamps.
     fn pass(&mut self, command: &Command, accesses: &[(Resource, Access)], write: impl FnOnce(&Self)) {
         let (label, scope): (Label, _) = (command.name(), command.scope());
         self.gpu.begin_label(self.commands, label, scope.map(|scope| &**scope));
@@ -286,7 +286,7 @@ impl Recorder<'_> {
     }
 }
 
-/// Vulkan takes no copies of nothing.
+/// Whether a command has no bytes to move: Vulkan does not allow copies of 0 bytes.
 fn does_nothing(command: &Command) -> bool {
     match command {
         Command::Upload { data, .. } => data.is_empty(),

@@ -4,11 +4,11 @@
 //!
 //! * [`Record::record`] never submits, waits or keeps the encoder.
 //! * Imported buffers and textures are never destroyed here; `destroy` only forgets them.
-//! * The device's callbacks, for its loss and for uncaptured errors, stay the engine's. No rule of the contract that is broken
-//!   becomes an uncaptured error.
-//! * wgpu derives barriers by itself, so the hazards of `tressfx-core` are not asked for.
+//! * The callbacks of an engine's device (device lost, uncaptured error) are left as the engine set them. A list that breaks
+//!   a rule of the contract gives an `Err`, never an uncaptured error.
+//! * wgpu derives barriers itself, so `tressfx_core::hazards` is not used.
 //!
-//! It decides nothing about hair and does not know what a window is.
+//! The crate decides nothing about hair and opens no window.
 
 mod device;
 mod draw;
@@ -75,11 +75,11 @@ impl WgpuBackend {
     }
 
     /// A backend with a device of its own and no window: on the fastest adapter that the system has, or on the first whose
-    /// name contains `adapter`, in whatever case.
+    /// name contains `adapter`, upper or lower case alike.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with what was tried and what to install, or with the adapters that
-    /// there are.
+    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with what was tried and what to install, or with the names of
+    /// the adapters of this system.
     pub async fn open(adapter: Option<&str>) -> Result<Self> {
         let (device, queue) = device::open(adapter).await?;
         let backend = Self::new(device, queue);
@@ -87,7 +87,7 @@ impl WgpuBackend {
         Ok(backend)
     }
 
-    /// As [`open`](Self::open), on the fastest adapter; waits for it. For tools and tests.
+    /// Blocks until [`open`](Self::open) has opened the fastest adapter. For tools and tests.
     ///
     /// # Errors
     /// As [`open`](Self::open).
@@ -95,7 +95,7 @@ impl WgpuBackend {
         Self::headless_on(None)
     }
 
-    /// As [`open`](Self::open); waits for it. For tools and tests.
+    /// Blocks until [`open`](Self::open) is done. For tools and tests.
     ///
     /// # Errors
     /// As [`open`](Self::open).

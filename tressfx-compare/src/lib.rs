@@ -1,8 +1,9 @@
-//! How far two pictures differ: FLIP, PSNR, the largest step, the share of pixels, and a heat map. No GPU, and no hair.
+//! How much two pictures differ: FLIP, PSNR, the largest difference of a channel, the share of pixels that differ, and a
+//! heat map. It needs no GPU and nothing of hair.
 //!
-//! Pictures are 8-bit sRGB with straight alpha. What is seen (FLIP, PSNR, the heat map) is compared over a mid-grey
-//! ground, so that the colour of a transparent pixel does not count; `max_difference` and `differing_share` look at the
-//! bytes of all four channels.
+//! Pictures are 8-bit sRGB with straight alpha. FLIP, PSNR and the heat map compare what one sees: both pictures are first
+//! blended over mid-grey, so that the colour of a fully transparent pixel does not count. `max_difference` and
+//! `differing_share` compare the bytes of all four channels.
 
 #![forbid(unsafe_code)]
 
@@ -35,7 +36,7 @@ pub enum Error {
     Sizes([u32; 2], [u32; 2]),
 }
 
-/// What two pictures differ by. It is the same whichever comes first. As JSON, it is the four figures.
+/// How much two pictures differ. The order of the two does not matter. Its JSON holds the four numbers, not the heat map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// The mean of FLIP over all pixels, at 67 pixels a degree: 0 for equal pictures, 1 at most.
@@ -77,7 +78,7 @@ impl Picture {
         self.rgba.as_chunks().0.iter()
     }
 
-    /// What is seen over mid-grey, mixed as browsers and viewers do: in encoded values.
+    /// The picture blended over mid-grey, in sRGB-encoded values, as browsers and image viewers blend.
     fn over_grey(&self) -> Vec<[u8; 3]> {
         let mix = |&[r, g, b, alpha]: &[u8; 4]| {
             let alpha = u32::from(alpha);
@@ -87,7 +88,7 @@ impl Picture {
     }
 }
 
-/// Compares two pictures of the same size. It takes some 90 bytes of memory a pixel.
+/// Compares two pictures of the same size. It needs about 90 bytes of memory for each pixel.
 pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, Error> {
     if a.size != b.size {
         return Err(Error::Sizes(a.size, b.size));

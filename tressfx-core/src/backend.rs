@@ -1,4 +1,4 @@
-//! The contract: what an engine implements so that hair runs on its GPU API.
+//! The contract: the traits that a backend implements so that hair runs on a GPU API.
 
 mod caps;
 mod catalog;
@@ -20,7 +20,7 @@ pub use owner::Owner;
 
 /// A GPU. Object safe: the library only ever sees `&mut dyn Backend`, and only while it creates things.
 ///
-/// It can neither submit nor wait. What breaks a rule of the contract is answered with an error, and does nothing.
+/// It can neither submit nor wait. A call that breaks a rule of the contract returns an error and changes nothing.
 pub trait Backend {
     /// What the device can do.
     fn caps(&self) -> &Caps;
@@ -37,29 +37,30 @@ pub trait Backend {
     /// Compiles a raster pipeline.
     fn create_raster(&mut self, desc: &RasterDesc) -> Result<RasterPipeline>;
 
-    /// Gives a resource back. Lists that are begun from now on must not name it; those that were begun before still can. It
-    /// is freed once none of them exists any more and no recorded frame can use it. An imported one is only forgotten.
+    /// Destroys a resource. Lists whose first command is written from now on must not name it; older lists still can. It is
+    /// freed once none of these older lists exists and no recorded frame can use it. An imported resource is not freed, only
+    /// no longer tracked.
     fn destroy(&mut self, resource: Resource);
 
     /// As [`destroy`](Backend::destroy), for a pipeline.
     fn destroy_pipeline(&mut self, pipeline: PipelineId);
 
-    /// What has become of a read-back. Its bytes are given once.
+    /// The state of a read-back. The bytes are returned once; later calls give [`ReadBack::Unknown`].
     fn read(&mut self, ticket: Ticket) -> ReadBack;
 
-    /// Gives a read-back up: nobody will ask for its bytes.
+    /// Cancels a read-back: nobody will ask for its bytes.
     fn give_up(&mut self, ticket: Ticket);
 
-    /// Cost of each compute and raster pass of the newest finished list that has any, in its order. They are given once; empty
-    /// where there are none yet, or the device cannot time.
+    /// The times of the compute and raster passes, in their order, of the newest list that has finished and has passes. They
+    /// are returned once. Empty if there are no new ones, or if the device cannot measure time.
     fn timings(&mut self) -> Vec<Timing>;
 
-    /// Bytes of buffers and textures that this backend made, as their descriptions say: now, and at most so far. What is
-    /// destroyed no longer counts, even if it is freed later.
+    /// Bytes of the buffers and textures that this backend made, computed from their descriptions: at present, and the
+    /// largest value so far. A destroyed resource no longer counts, even if it is freed later.
     fn memory(&self) -> Memory;
 }
 
-/// How an application puts a list into the encoder that it already has.
+/// A backend that writes lists into the encoder of an engine.
 pub trait Record: Backend {
     /// The engine's own encoder: `wgpu::CommandEncoder`, a command buffer of Vulkan...
     type Encoder: ?Sized;
@@ -67,12 +68,12 @@ pub trait Record: Backend {
     /// Writes the commands of `list` into `encoder`. Never submits, never waits, never keeps the encoder.
     ///
     /// # Errors
-    /// [`Error::Rule`](crate::Error::Rule) if a command breaks a rule of the contract: nothing was written then. Else what
-    /// the device says.
+    /// [`Error::Rule`](crate::Error::Rule) if a command breaks a rule of the contract; nothing was written then. Otherwise
+    /// an error of the device.
     fn record(&mut self, encoder: &mut Self::Encoder, list: &PassList) -> Result<()>;
 }
 
-/// A backend that has a queue of its own, for tests and tools; engines use [`Record`].
+/// A backend that can submit to a queue, for tests and tools; engines use [`Record`].
 pub trait Run: Backend {
     /// Records, submits and waits.
     ///
@@ -81,7 +82,7 @@ pub trait Run: Backend {
     fn run(&mut self, list: &PassList) -> Result<()>;
 }
 
-/// What has become of a read-back.
+/// The state of a read-back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReadBack {
     /// The bytes, rows of textures tightly packed.
@@ -109,13 +110,14 @@ impl ReadBack {
 pub struct Timing {
     /// The pass.
     pub label: Label,
-    /// Whose pass it is: see [`PassList::scope`](crate::pass::PassList::scope).
+    /// What the pass belongs to, by name: see [`PassList::scope`](crate::pass::PassList::scope).
     pub scope: Option<Arc<str>>,
     /// When it began, in nanoseconds after the first pass of its list.
     pub begin: f64,
-    /// Its time.
+    /// How long it took, in nanoseconds.
     pub nanoseconds: f64,
-    /// Bytes of all that is bound or drawn to, each resource once: the most that one reading of everything can cost.
+    /// The sum of the sizes of all resources that the pass binds or draws to, each once: the bytes moved if everything is
+    /// read or written once.
     pub bytes: u64,
     /// Shader invocations, where the device counts them and was asked to.
     pub invocations: Option<u64>,

@@ -1,8 +1,8 @@
-//! What must be waited for before each command of a list, on APIs that ask.
+//! Hazards: which earlier accesses each command of a list has to wait for. For APIs that need explicit barriers.
 //!
-//! For each resource the tracker keeps the last writer and the stages that have seen its write since. "Last use" alone is
-//! not enough: written in compute, read in compute, read in graphics needs two waits, since the graphics stages never saw
-//! the write.
+//! For each resource [`Hazards`] keeps the last write and the kinds of access that have already waited for it. To keep the
+//! last access only is not enough. Example: a compute pass writes, a compute pass reads, a raster pass reads. The raster
+//! pass needs a wait of its own, since only compute has waited for the write.
 
 use std::collections::HashMap;
 use std::ops::BitOr;
@@ -60,31 +60,31 @@ impl BitOr for Access {
     }
 }
 
-/// One resource to be waited for.
+/// A command has to wait before it uses this resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wait {
     /// The resource.
     pub resource: Resource,
-    /// What was done to it before. Empty: it is a texture without contents, which only has to be put into a layout.
+    /// The earlier accesses to wait for. Empty for a texture without contents, which only needs a layout.
     pub before: Access,
-    /// What the command does with it.
+    /// The access that has to wait.
     pub after: Access,
 }
 
 /// The state of one resource.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct State {
-    /// The last write.
+    /// The last write, or the access that the layout was last changed for.
     written: Access,
     /// Reads since that write.
     read: Access,
-    /// Accesses that need not wait for the write any more.
+    /// Kinds of access that have already waited for the write.
     seen: Access,
-    /// How a texture lies in memory; `None` before its first use.
+    /// The layout of a texture; `None` before its first use, and for buffers.
     layout: Option<Layout>,
 }
 
-/// How a texture lies in memory: APIs that ask for barriers ask for these too.
+/// The layout of a texture in memory. APIs with explicit barriers have layouts too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// As it is drawn to.
@@ -116,20 +116,21 @@ impl Layout {
     }
 }
 
-/// Walks lists in the order in which they are recorded. It lives as long as a backend, so that it joins frames too.
+/// The state of all resources of a backend. It is given the commands in the order in which they are recorded, and lives as
+/// long as the backend, so that hazards between two frames are found too.
 #[derive(Clone, Debug, Default)]
 pub struct Hazards {
     states: HashMap<Resource, State>,
-    /// States as they were when the recording under way began, of what it has changed.
+    /// The resources that the present recording has used, with their states from before it.
     changed: HashMap<Resource, Option<State>>,
 }
 
-/// What a recording has changed: for one that is thrown away.
+/// The states from before a recording, for [`Hazards::undo`] if the recording is thrown away.
 #[derive(Clone, Debug, Default)]
 pub struct Undo(HashMap<Resource, Option<State>>);
 
 impl Hazards {
-    /// What must be waited for before `command`, one entry a resource; empty if nothing.
+    /// What `command` has to wait for: at most one entry for each resource.
     pub fn before(&mut self, command: &Command) -> Vec<Wait> {
         let mut waits = Vec::new();
         for (resource, access) in accesses(command) {
@@ -144,12 +145,13 @@ impl Hazards {
         self.changed.remove(&resource);
     }
 
-    /// Ends a recording: what it has changed since the last one ended, to be given to [`Hazards::undo`] if it never runs.
+    /// Ends a recording. Give the result to [`Hazards::undo`] if the recording never runs.
     pub fn end_recording(&mut self) -> Undo {
         Undo(std::mem::take(&mut self.changed))
     }
 
-    /// Takes a recording back that will never run. Recordings are taken back from the newest on, and none is under way.
+    /// Takes back a recording that will never run. The newest recording has to be taken back first, then the one before it.
+    /// No recording may be unfinished at that time.
     pub fn undo(&mut self, Undo(states): Undo) {
         for (resource, state) in states {
             match state {
@@ -159,26 +161,27 @@ impl Hazards {
         }
     }
 
-    /// The state of a resource, to be changed.
+    /// The state of a resource for changing; keeps a copy for [`Undo`] at the first change of a recording.
     fn state(&mut self, resource: Resource) -> &mut State {
         self.changed.entry(resource).or_insert_with(|| self.states.get(&resource).copied());
         self.states.entry(resource).or_default()
     }
 
-    /// Gives an imported resource back to its owner: what was done to it, which the owner's next use has to wait for. It is
-    /// forgotten.
+    /// Gives an imported resource back to its owner and forgets its state. The result are the accesses that the owner's next
+    /// use has to wait for.
     pub fn release(&mut self, resource: Resource) -> Access {
         let state = std::mem::take(self.state(resource));
         self.states.remove(&resource);
         state.written | state.read
     }
 
-    /// What must be waited for before `resource` is used so: for uses that no command says. A backend that fills a new
-    /// resource with zeros says it here, and one that takes a resource from an engine says here what the engine did to it.
+    /// Notes an access, and gives what it has to wait for. [`Hazards::before`] calls it for each access of a command. A
+    /// backend calls it for accesses that are not in a command: zeros for a new resource, and what an engine did to a
+    /// resource.
     pub fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
         let state = self.state(resource);
         let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
-        // A change of layout writes, whatever it is changed for, and the use that it was changed for has seen it.
+        // A change of layout is a write, even if the access only reads. That access has waited for it.
         if access.writes() || state.layout != layout {
             let before = state.written | state.read;
             let (read, seen) = if access.writes() { (Access::NONE, Access::NONE) } else { (access, access) };
@@ -194,7 +197,7 @@ impl Hazards {
     }
 }
 
-/// What a command does with each resource that it names, each resource once.
+/// The resources that a command names, each once, with its accesses.
 pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
     let mut found = Vec::new();
     match command {
@@ -213,11 +216,16 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
             if let Groups::Indirect { buffer, .. } = pass.groups {
                 found.push((buffer.into(), Access::INDIRECT_READ));
             }
-            bound(&mut found, &pass.kernel.shader, &pass.bindings, [Access::COMPUTE_READ, Access::COMPUTE_WRITE]);
+            add_bindings(
+                &mut found,
+                &pass.kernel.shader,
+                &pass.bindings,
+                [Access::COMPUTE_READ, Access::COMPUTE_WRITE],
+            );
         }
         Command::Raster(pass) => {
             for Draw { pipeline, bindings, count } in &pass.draws {
-                bound(&mut found, &pipeline.shader, bindings, [Access::RASTER_READ, Access::RASTER_WRITE]);
+                add_bindings(&mut found, &pipeline.shader, bindings, [Access::RASTER_READ, Access::RASTER_WRITE]);
                 if let Count::Indirect { buffer, .. } = count {
                     found.push(((*buffer).into(), Access::INDIRECT_READ));
                 }
@@ -230,7 +238,7 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
     merge(found)
 }
 
-fn bound(found: &mut Vec<(Resource, Access)>, shader: &Shader, bindings: &Bindings, [read, write]: [Access; 2]) {
+fn add_bindings(found: &mut Vec<(Resource, Access)>, shader: &Shader, bindings: &Bindings, [read, write]: [Access; 2]) {
     for (slot, binding) in shader.slots.iter().zip(bindings.all()) {
         let access = match slot.kind {
             SlotKind::ReadWrite => read | write,

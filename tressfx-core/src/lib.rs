@@ -1,7 +1,9 @@
-//! Strands, views, and the contract with a graphics API.
+//! Strands, views, and the contract between the library and a graphics API: the [`Backend`](backend::Backend) trait, and
+//! lists of passes as plain data ([`pass`]).
 //!
-//! This crate names no graphics API, makes no device, never submits and never waits. It knows strands, not how they move
-//! ([`tressfx-sim`](https://docs.rs/tressfx-sim)) or look ([`tressfx-render`](https://docs.rs/tressfx-render)).
+//! This crate names no graphics API, makes no device, never submits and never waits. It holds the data of strands. How they
+//! move is in [`tressfx-sim`](https://docs.rs/tressfx-sim), how they are drawn in
+//! [`tressfx-render`](https://docs.rs/tressfx-render).
 
 #![forbid(unsafe_code)]
 
@@ -24,6 +26,6 @@ pub mod view;
 pub use error::{Error, Result};
 /// The vectors, matrices and rotations that all crates use.
 pub use glam;
-/// The shader compiler, for backends that take its modules.
+/// The shader compiler, for backends that build their shaders from its [`naga::Module`].
 #[cfg(feature = "naga-ir")]
 pub use naga;

@@ -1,15 +1,16 @@
-//! Rendering of hair: compute kernels shade strands, walk them over the pixels of a view, and put what they leave there in
-//! order.
+//! Rendering of hair: compute kernels shade strands, turn them into fragments of pixels, and sort the fragments of each
+//! pixel.
 //!
 //! ```text
-//! hair.render.shade      compute  one thread a strand vertex: its colour, seen from a view     HairRenderer
-//! hair.render.fill       compute  one thread a strand segment: fragments into lists of pixels  Technique::Ppll
-//! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up
-//! hair.render.composite  raster   tiles with hair: over the caller's picture
+//! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
+//! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
+//! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
+//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        Technique::Ppll
 //! ```
 //!
-//! This crate writes passes into a [`PassList`](tressfx_core::pass::PassList); it names no backend, submits nothing and
-//! reads nothing back by itself. Each kernel is one WGSL file, one Rust file and one f64 [`mod@reference`] of the same name.
+//! The last column says what writes the pass. This crate writes passes into a [`PassList`](tressfx_core::pass::PassList). It
+//! names no backend, submits nothing and reads nothing back unless the caller asks. Each compute kernel is one WGSL file,
+//! one Rust file and one f64 function in [`mod@reference`], all of the same name.
 
 #![forbid(unsafe_code)]
 

@@ -38,7 +38,7 @@ impl Strands<'_> {
         (vertex * self.uniform.strands + strand) as usize
     }
 
-    /// The position of a vertex, moved by the pose.
+    /// The position of a vertex in the world: transformed by the pose of the section.
     fn posed(&self, index: usize) -> DVec3 {
         matrix(&self.uniform.pose).transform_point3(xyz(&self.positions[index]))
     }

@@ -1,4 +1,4 @@
-//! The passes of hair in a frame.
+//! The renderer: it writes the passes that draw hair in a frame.
 
 use tressfx_core::backend::{Backend, Format, Owner};
 use tressfx_core::error::{Error, Result};
@@ -14,10 +14,10 @@ use crate::strands::SectionDraw;
 use crate::technique::{Order, Technique};
 use crate::views::{MAX_VIEWS, ViewDraw, Views};
 
-/// Room in the pool beyond what was predicted or measured: the next frame moves.
+/// The pool is made this many times as large as predicted or measured, since the next frame may need more.
 const HEADROOM: f64 = 1.25;
 
-/// A renderer to be made.
+/// Describes a renderer that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RenderDesc {
@@ -25,12 +25,12 @@ pub struct RenderDesc {
     pub size: [u32; 2],
     /// Format of the colour targets.
     pub target: Format,
-    /// How hair in front of hair gets its order.
+    /// How fragments of hair behind each other are sorted and blended.
     pub technique: Technique,
 }
 
 impl RenderDesc {
-    /// Lists of fragments with their defaults.
+    /// The default technique: lists of fragments for each pixel.
     pub fn new(size: [u32; 2], target: Format) -> Self {
         Self { size, target, technique: Technique::default() }
     }
@@ -42,7 +42,7 @@ impl RenderDesc {
     }
 }
 
-/// What is drawn to.
+/// The textures that hair is drawn to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Targets {
@@ -78,30 +78,30 @@ pub enum DrawError {
         /// The renderer's.
         renderer: [u32; 2],
     },
-    /// A section is not where it can be.
+    /// The pose of a section is not valid.
     #[error("hair.render: {0}")]
     Pose(#[from] PoseError),
-    /// What the contract refuses.
+    /// A rule of the contract is broken, or the device fails.
     #[error(transparent)]
     Backend(#[from] Error),
 }
 
-/// Draws hair: strands are shaded for a view, walked over its pixels, and put in order by a [`Technique`].
+/// Draws hair: strands are shaded for a view and turned into fragments, which a [`Technique`] sorts and blends.
 ///
-/// The same strands and view give the same picture to the bit, as long as no fragment is dropped: which of them finds room
-/// in a full pool is up to the GPU.
+/// The same strands and view give exactly the same picture, bit for bit, as long as no fragment is dropped. Which fragments
+/// are dropped when the pool is full depends on the GPU.
 #[derive(Debug)]
 pub struct HairRenderer {
     desc: RenderDesc,
     views: Views,
     shade: Shade,
     order: Box<dyn Order>,
-    /// Of everything above.
+    /// Frees everything above.
     owner: Owner,
 }
 
 impl HairRenderer {
-    /// Compiles the kernels and makes the buffers of the screen.
+    /// Compiles the kernels and makes the buffers whose size depends on that of the view.
     ///
     /// # Errors
     /// What the device lacks, or what the backend says.
@@ -121,26 +121,27 @@ impl HairRenderer {
         &self.desc
     }
 
-    /// Fragments that there is room for at the moment.
+    /// How many fragments the pool can hold at present.
     pub fn capacity(&self) -> u32 {
         self.order.capacity()
     }
 
-    /// Makes the buffers of the screen anew, for views of at most this size. Lists that were written before stay sound.
+    /// Makes the buffers whose size depends on that of the view again, for views of at most this size. Lists that were
+    /// written before stay valid.
     ///
     /// # Errors
-    /// As [`HairRenderer::new`]. The renderer is as it was then.
+    /// As [`HairRenderer::new`]. If it fails, the renderer is unchanged.
     pub fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
         self.owner.change(backend, |backend| self.order.resize(backend, size))?;
         self.desc.size = size;
         Ok(())
     }
 
-    /// Makes room for what a view is predicted to need. To be called before the first frame and after a cut of the camera,
-    /// for each view.
+    /// Enlarges the pool to what a view is predicted to need. Call it for each view, before the first frame and whenever the
+    /// camera jumps.
     ///
     /// # Errors
-    /// What the backend says when it cannot make a buffer of that size; the pool is as it was then.
+    /// What the backend says when it cannot make a buffer of that size; the pool is unchanged then.
     pub fn reserve(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         if view.is_empty() {
             return Ok(());
@@ -149,7 +150,8 @@ impl HairRenderer {
         self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
     }
 
-    /// Makes room for what a view was found to need; nothing happens while there is enough.
+    /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
+    /// are those that [`HairRenderer::read_counters`] has brought back.
     ///
     /// # Errors
     /// As [`HairRenderer::reserve`].
@@ -161,8 +163,8 @@ impl HairRenderer {
         self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
     }
 
-    /// Draws sections, each once in each view, sorted against each other. Where there is no strand or no pixel, there is no
-    /// pass.
+    /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is
+    /// written.
     ///
     /// # Errors
     /// [`DrawError`]; nothing is written then.
@@ -208,7 +210,7 @@ impl HairRenderer {
         Ok(())
     }
 
-    /// Brings the counters of a view of the frame so far back: see [`Counters::from_bytes`].
+    /// Reads back the counters of a view, as they are at this place of the list; [`Counters::from_bytes`] decodes them.
     ///
     /// # Panics
     /// If a frame cannot have so many views.

@@ -1,4 +1,4 @@
-//! Strands with what it takes to shade and to draw them.
+//! Sections of strands for the renderer, with what shading and drawing need.
 
 use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, Owner};
@@ -13,16 +13,16 @@ use crate::material::Material;
 use crate::uniforms::SectionUniform;
 use crate::visibility;
 
-/// Segments that a prediction looks at.
+/// How many segments a prediction samples.
 const SAMPLES: usize = 4096;
 
-/// Layers of hair that leave little to be seen between them.
+/// So many layers of hair make the groom look dense.
 const COVER: f64 = 9.0;
 
-/// Radius of thick human hair in metres.
+/// The smallest fitting radius in metres: that of thick human hair.
 const THINNEST: f64 = 0.000_06;
 
-/// Radius in metres beyond which a strand no longer looks like hair.
+/// The largest fitting radius in metres: thicker strands do not look like hair.
 const THICKEST: f64 = 0.000_4;
 
 /// What rendering needs to know of a section beside its buffers.
@@ -66,8 +66,8 @@ impl StrandInfo {
     }
 }
 
-/// The radius with which strands of that number and length cover the sides of the groom [`COVER`] times, if that is not
-/// thinner than hair nor as thick as a noodle.
+/// The radius with which the strands would cover the sides of the groom's bounds [`COVER`] times, clamped to between
+/// [`THINNEST`] and [`THICKEST`].
 fn fitting_radius(strands: &Strands) -> f32 {
     let extent = (strands.bounds.max - strands.bounds.min) * strands.metres_per_unit;
     let sides = (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / 3.0;

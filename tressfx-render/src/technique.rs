@@ -1,4 +1,4 @@
-//! What a renderer asks of the technique that puts fragments in order.
+//! Techniques: how fragments are sorted and blended. The interface between the renderer and a technique.
 
 use std::fmt::Debug;
 
@@ -12,7 +12,7 @@ use crate::renderer::Targets;
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-/// How hair in front of hair gets its order.
+/// How fragments of hair behind each other are sorted and blended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Technique {
@@ -26,23 +26,23 @@ impl Default for Technique {
     }
 }
 
-/// A technique at work: what becomes of shaded strands in front of a view.
+/// An instance of a technique: it turns shaded strands into pixels of a view.
 ///
 /// The renderer has uploaded views and sections, and shades the strands for a view before it calls `draw`. It owns what is made.
 pub(crate) trait Order: Debug + Send + Sync {
-    /// Makes what is as large as the screen anew.
+    /// Makes the buffers whose size depends on that of the view again.
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()>;
 
-    /// Makes room for so many fragments.
+    /// Enlarges the pool to at least this many fragments, up to its limit.
     fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()>;
 
-    /// Fragments that there is room for.
+    /// How many fragments the pool can hold.
     fn capacity(&self) -> u32;
 
     /// The buffer with the [`Counters`](crate::Counters) of each view, and where those of a view are.
     fn counters(&self, view: usize) -> (BufferId, u64);
 
-    /// Begins a frame of so many views: uploads what is the same for all of them.
+    /// Begins a frame with this many views: uploads what is the same for all of them.
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]);
 
     /// Writes the passes of a view.

@@ -1,10 +1,11 @@
-//! How much light reaches each vertex of a groom, and from where: a first-order description of the shadow that the rest
-//! pose casts on itself, made once on the CPU and carried along by the strands as they move.
+//! How much light reaches each vertex of a groom, and from which directions. It is the shadow of the groom on itself in the
+//! rest pose, computed once on the CPU. It moves with the strands.
 //!
-//! The groom is put into a grid as an absorbing medium, with the skin under its roots. Light is followed through the grid
-//! along the 26 directions between neighbouring cells, and the share that arrives, as a function of its direction, is
-//! reduced to a constant and a vector, as in first-order spherical harmonics. The vector is kept in a frame of the strand
-//! (its tangent, the way that it grows out of the skin), so that it turns with the strand.
+//! The groom is entered into a grid of cells as an absorbing medium, together with the skin under its roots. Light is traced
+//! through the grid along the 26 directions between neighbouring cells. The share of the light that arrives is a function of
+//! the direction; it is stored as a constant and a vector, as in first-order spherical harmonics. The vector is relative to
+//! a frame of the strand (its tangent, and the direction in which it grows out of the skin), so that it turns with the
+//! strand.
 
 use glam::{IVec3, Vec3, Vec4};
 use tressfx_core::strands::{Bounds, Strands};
@@ -12,29 +13,29 @@ use tressfx_core::strands::{Bounds, Strands};
 /// Cells along the longest side of the groom.
 const CELLS: f32 = 56.0;
 
-/// Hair scatters most light onwards: the share of what a strand covers that is taken away.
+/// The share of the light on a strand that is absorbed. Hair scatters most of it forwards.
 const ABSORPTION: f32 = 0.3;
 
-/// Guides that are put into the grid: any prefix of them is an even sample.
+/// The most guides that are entered into the grid. The first ones are an even sample of all.
 const MAX_GUIDES: usize = 40_000;
 
 /// Cells around the groom: room for the skin.
 const MARGIN: i32 = 8;
 
 /// Largest radius of the balls that the skin is made of, in cells.
-const MAX_SKIN: f32 = 3.0;
+const MAX_SKIN_RADIUS: f32 = 3.0;
 
-/// Optical depth of a cell within the skin.
-const SKIN: f32 = 6.0;
+/// Optical depth of a cell that is inside the skin.
+const SKIN_DEPTH: f32 = 6.0;
 
 /// Weights of Lebedev's 26 points on a sphere: those of the axes, of the edges and of the corners of a cube.
 const WEIGHTS: [f32; 3] = [1.0 / 21.0, 4.0 / 105.0, 9.0 / 280.0];
 
-/// For each vertex of the guides, strand-major: in the frame of [`crate::StrandInfo::visibility`]. `radius` is that of a fibre in
-/// the unit of the file.
+/// The visibility of each vertex of the guides, strand-major, as [`crate::StrandInfo::visibility`] describes it. `radius` is
+/// the radius of a fibre in the unit of the file.
 pub(crate) fn visibility(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
     let lattice = Lattice::around(strands);
-    let mut medium = Medium { lattice, depth: vec![0.0; lattice.cells()] };
+    let mut medium = Medium { lattice, depth: vec![0.0; lattice.cell_count()] };
     medium.add_hair(strands, radius);
     medium.add_skin(strands);
     let light = medium.light(&lattice.cells_around(strands));
@@ -46,7 +47,8 @@ pub(crate) fn visibility(strands: &Strands, radius: f32) -> Vec<[f32; 4]> {
     (0..strands.rest.len()).map(local).collect()
 }
 
-/// The vector in the frame of a strand: along the tangent, across it towards `growth`, and across both.
+/// The vector in the frame of a strand: its parts along the tangent, along the part of `growth` that is perpendicular to it,
+/// and perpendicular to both; then the constant.
 fn in_frame(constant: f32, vector: Vec3, tangent: Vec3, growth: Vec3) -> [f32; 4] {
     let across = (growth - tangent * growth.dot(tangent)).normalize_or_zero();
     [vector.dot(tangent), vector.dot(across), vector.dot(tangent.cross(across)), constant]
@@ -68,7 +70,7 @@ impl Lattice {
         Self { origin: strands.bounds.min - MARGIN as f32 * cell, cell, size }
     }
 
-    fn cells(&self) -> usize {
+    fn cell_count(&self) -> usize {
         (self.size.x * self.size.y * self.size.z) as usize
     }
 
@@ -77,7 +79,7 @@ impl Lattice {
         inside.then(|| ((at.z * self.size.y + at.y) * self.size.x + at.x) as usize)
     }
 
-    /// The eight cells around a point and their shares.
+    /// The eight cells around a point and their weights in trilinear interpolation.
     fn around_point(self, point: Vec3) -> impl Iterator<Item = (usize, f32)> {
         let at = (point - self.origin) / self.cell - 0.5;
         let (low, share) = (at.floor().as_ivec3(), at - at.floor());
@@ -88,9 +90,9 @@ impl Lattice {
         })
     }
 
-    /// Whether light is asked for in each cell: in those around the vertices of the guides.
+    /// For each cell, whether its light is needed: it is, around the vertices of the guides.
     fn cells_around(&self, strands: &Strands) -> Vec<bool> {
-        let mut wanted = vec![false; self.cells()];
+        let mut wanted = vec![false; self.cell_count()];
         for vertex in &strands.rest {
             self.around_point(vertex.truncate()).for_each(|(cell, _)| wanted[cell] = true);
         }
@@ -104,16 +106,16 @@ impl Lattice {
     }
 }
 
-/// What the cells absorb.
+/// The absorbing medium in the cells.
 struct Medium {
     lattice: Lattice,
-    /// Optical depth of each cell on the way through it.
+    /// Optical depth of each cell, from one side to the other.
     depth: Vec<f32>,
 }
 
 impl Medium {
-    /// Adds what strands cover: their width times their length, seen from everywhere (pi/4 of it), as a share of the side of
-    /// a cell.
+    /// Adds the hair. A strand covers its width times its length, times pi/4 as the mean over all directions. The optical
+    /// depth is this area divided by the area of a side of a cell.
     fn add_hair(&mut self, strands: &Strands, radius: f32) {
         let Lattice { cell, .. } = self.lattice;
         let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
@@ -133,14 +135,15 @@ impl Medium {
         }
     }
 
-    /// Adds a ball behind each root, as large as the roots are apart, so that together they are a skin without holes.
+    /// Adds the skin: a ball behind each root whose radius is the mean distance between roots, so that together they have no
+    /// holes.
     fn add_skin(&mut self, strands: &Strands) {
         let Lattice { cell, origin, .. } = self.lattice;
         let roots = strands.rest.iter().step_by(strands.vertices as usize).map(|root| root.truncate());
         let extent = Bounds::of(roots.clone()).max - Bounds::of(roots.clone()).min;
         let area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
         let spacing = (area / strands.guides.max(1) as f32).sqrt();
-        let radius = (spacing / cell).clamp(1.0, MAX_SKIN);
+        let radius = (spacing / cell).clamp(1.0, MAX_SKIN_RADIUS);
         let reach = radius.ceil() as i32;
         let ball: Vec<IVec3> = (-reach..=reach)
             .flat_map(|z| (-reach..=reach).flat_map(move |y| (-reach..=reach).map(move |x| IVec3::new(x, y, z))))
@@ -150,13 +153,13 @@ impl Medium {
             let middle = root - *direction * cell * (radius + 1.0);
             let at = ((middle - origin) / cell).floor().as_ivec3();
             for index in ball.iter().filter_map(|&step| self.lattice.index(at + step)) {
-                self.depth[index] = self.depth[index].max(SKIN);
+                self.depth[index] = self.depth[index].max(SKIN_DEPTH);
             }
         }
     }
 
-    /// The light that arrives in each cell that is `wanted`, of unit light from everywhere: `[0, 0, 0, constant]` and the
-    /// vector.
+    /// The light that arrives in each `wanted` cell if light of strength 1 comes from every direction: `[0, 0, 0, constant]`
+    /// and the vector.
     fn light(&self, wanted: &[bool]) -> Vec<[Vec4; 2]> {
         let mut light = vec![[Vec4::ZERO; 2]; self.depth.len()];
         let mut passed = vec![0.0f32; self.depth.len()];
@@ -164,7 +167,7 @@ impl Medium {
         for step in steps {
             let weight = WEIGHTS[step.abs().element_sum() as usize - 1];
             let towards = -step.as_vec3().normalize();
-            self.follow(step, &mut passed);
+            self.trace(step, &mut passed);
             for ((light, &passed), _) in light.iter_mut().zip(&passed).zip(wanted).filter(|(_, wanted)| **wanted) {
                 let arriving = weight * (-passed).exp();
                 light[0].w += arriving;
@@ -175,11 +178,11 @@ impl Medium {
     }
 
     /// The optical depth that light has passed when it reaches each cell along `step`.
-    fn follow(&self, step: IVec3, passed: &mut [f32]) {
+    fn trace(&self, step: IVec3, passed: &mut [f32]) {
         let size = self.lattice.size;
         let length = step.as_vec3().length();
         let back = ((step.z * size.y + step.y) * size.x + step.x) as isize;
-        // The cell before another along the step comes first.
+        // Cells are visited so that the one before a cell, in the direction of the light, is done first.
         let along = |size: i32, step: i32, i: i32| if step < 0 { size - 1 - i } else { i };
         for z in (0..size.z).map(|z| along(size.z, step.z, z)) {
             for y in (0..size.y).map(|y| along(size.y, step.y, y)) {

@@ -4,8 +4,8 @@ import package::vector::{across, direction_or, rotate_back};
 
 struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
 
-/// The motion of a capsule during the sub-step as the head sees it, about the centre of the groom: its points are turned, then
-/// shifted.
+/// The motion of a capsule during the sub-step, in the space of the head, relative to the centre of the groom: its points
+/// are rotated, then moved.
 struct GpuCapsuleMotion { turn: vec4<f32>, shift: vec3<f32>, padding: f32 }
 
 /// Where a point of a capsule was at the beginning of the sub-step.
@@ -26,16 +26,16 @@ fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
     return vec4(capsule.a + t * axis, capsule.radius_a + t * (capsule.radius_b - capsule.radius_a));
 }
 
-/// How far `point` can go before it may be inside. The radius changes along the axis too, so that is less than the distance
-/// from the surface where a capsule is tapered.
+/// A distance that `point` can move in any direction and not come inside. For a tapered capsule it is less than the distance
+/// from `sphere`, since the radius changes along the axis.
 fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
     let axis = distance(capsule.a, capsule.b);
     let taper = select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
     return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper);
 }
 
-/// A vertex is turned at most so many times as far as it is deep, or as it is off the line through parent and centre. This is
-/// also the factor by which a contact can enlarge a rounding error.
+/// The limit of a rotation: this times the depth of the vertex, or this times its distance from the line through parent and
+/// centre if that is less. It is also the factor by which a contact can enlarge a rounding error.
 const GROWTH: f32 = 4.0;
 /// Sine of the smallest angle between an edge and the way straight outwards that a turn may end at. At smaller angles the turn
 /// goes with the square root of the depth.
@@ -44,7 +44,7 @@ const LEAST_SINE: f32 = 1.0 / GROWTH;
 /// else it would never get out. It is about what f32 can tell of positions.
 const TILT: f32 = 1e-7;
 
-/// Where a vertex has been turned to, and the share that this took of how far it may be turned.
+/// The new place of a vertex, and the share of the limit on rotations that was used.
 struct Turn { point: vec3<f32>, share: f32 }
 
 /// Turns a vertex that is inside of a sphere about its parent until it is on the surface; its distance from the parent stays. The
@@ -58,7 +58,7 @@ struct Turn { point: vec3<f32>, share: f32 }
 /// straight outwards as `LEAST_SINE` allows, or keeps its angle if that is smaller. Where the parent is at the centre, no
 /// direction is outwards.
 ///
-/// The result depends on the arguments without a jump: a vertex that is hardly inside is turned hardly at all.
+/// The result is a continuous function of the arguments: a vertex that is only just inside is rotated only a little.
 fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>, left: f32) -> Turn {
     let from_center = parent - sphere.xyz;
     let distance = sqrt(dot(from_center, from_center));
@@ -66,8 +66,8 @@ fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>,
     let before = direction_or(aim, outwards);
     // Cosines and sines are those of the angle between `outwards` and the edge.
     let old_cosine = dot(before, outwards);
-    // Twice: what rounding leaves of two directions that are nearly one lies along them as likely as across, and a turn to that
-    // side would be none.
+    // Done twice. If the two directions are nearly equal, what rounding leaves of their difference may lie along them
+    // instead of across, and a rotation to that side would not move the vertex.
     var across_outwards = before - old_cosine * outwards;
     across_outwards -= dot(across_outwards, outwards) * outwards;
     let old_sine = sqrt(dot(across_outwards, across_outwards));
@@ -101,7 +101,8 @@ fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>,
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin
-/// et al. 2014). The push itself is no motion and is taken out as well. A touch of no depth changes nothing; nothing sticks.
+/// et al. 2014). The push itself is no motion and is taken out as well. At depth 0 nothing changes. There is no static
+/// friction.
 fn slid(displacement: vec3<f32>, normal: vec3<f32>, depth: f32, friction: f32) -> vec3<f32> {
     let along_normal = dot(displacement, normal);
     let slide = displacement - along_normal * normal;

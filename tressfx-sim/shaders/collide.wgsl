@@ -1,10 +1,11 @@
 // Collision with tapered capsules, from the root to the tip. One thread a guide.
 //
-// A vertex inside a capsule is turned about its parent until it is outside, and the rest of the strand follows, so that every
-// edge keeps its length. A strand that touches nothing is not written.
+// A vertex inside a capsule is rotated about its parent towards the outside, as far as the limit of this sub-step allows.
+// The vertices after it are placed again at their distance from their parent, so that every edge keeps its length. A strand
+// that touches no capsule is not written.
 //
-// Most vertices are far from all capsules. Where the nearest capsule is at a distance `clear`, the next vertices need no test
-// until the strand has gone on by that length.
+// Most vertices are far from all capsules. If the nearest capsule is at the distance `clear` from a vertex, the vertices
+// after it need no test for that length of the strand.
 
 import package::capsule::{GROWTH, GpuCapsule, GpuCapsuleMotion, clearance, nearest, origin_of, relative_to, slid, turned_out};
 import package::grid::{GROUP, thread_index};
@@ -12,7 +13,7 @@ import package::root::{Root, carried_from, root_of};
 import package::step::step;
 import package::vector::{DOWN, direction_or, rotate, rotate_back};
 
-/// At the end of the sub-step, in the space of the rest pose, about the centre of the groom.
+/// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
 @group(0) @binding(1) var<storage, read> capsules: array<GpuCapsule>;
 /// How each of them has moved during the sub-step.
 @group(0) @binding(2) var<storage, read> capsule_motions: array<GpuCapsuleMotion>;
@@ -20,37 +21,40 @@ import package::vector::{DOWN, direction_or, rotate, rotate_back};
 @group(0) @binding(4) var<storage, read_write> previous: array<vec4<f32>>;
 @group(0) @binding(5) var<storage, read_write> positions: array<vec4<f32>>;
 
-/// How often the capsules are gone through at most: a vertex that leaves one may enter another.
+/// The most times that all capsules are tested for a vertex: one that leaves a capsule may enter another.
 const ROUNDS: u32 = 5u;
-/// Share of the bound on turns that a round leaves to the next one. Without it each round would multiply the rounding errors of
-/// the round before.
+/// The limit on rotations is multiplied by this from round to round. Otherwise each round would amplify the rounding errors
+/// of the round before. (A round is one pass over the capsules.)
 const NEXT_ROUND: f32 = 0.25;
 /// A round that turns a vertex by less than this share of its edge is the last one.
 const LEAST_TURN: f32 = 1e-5;
-/// Share of the squared radius within which a vertex is inside. A vertex that was put on the surface is outside.
+/// A vertex is inside if its squared distance is less than this share of the squared radius. So a vertex on the surface is
+/// outside, in spite of rounding.
 const INSIDE: f32 = 0.999999;
 /// Larger than any groom.
 const FAR: f32 = 1e30;
-/// Share of a clearance that is certain in spite of rounding.
+/// A computed clearance is multiplied by this, so that rounding cannot make it too large.
 const CERTAIN: f32 = 0.999;
 
-/// A vertex on its way out of the capsules. Vectors are on the axes of the head, points about the root of the strand.
+/// A vertex that is being moved out of the capsules. Vectors are on the axes of the head, points relative to the root of the
+/// strand.
 struct Contact {
     point: vec3<f32>,
     /// Whether any capsule held the vertex.
     touched: bool,
-    /// The vertex's displacement since its past, without what contacts have taken from it.
+    /// The vertex's displacement from its previous position, less what contacts and friction have removed.
     displacement: vec3<f32>,
-    /// Distance from all capsules, if none was touched.
+    /// Distance to the nearest capsule, or less, if none was touched.
     clear: f32,
-    /// The direction of the edge from which turns start.
+    /// The direction of the edge that rotations start from if the vertex is deep inside, see `leave`.
     heading: vec3<f32>,
-    /// Share of the bound on turns that is left.
+    /// The share of the limit on rotations that is left.
     left: f32,
 }
 
-/// One time through the capsules from `first` up to `end`. `hits` of them held the vertex, the last of those is `hit`. All turns
-/// together moved it by `moved`. It was at least `others` away from all capsules that did not hold it.
+/// One pass over the capsules from `first` up to `end`, without `end`. The vertex was inside of `hits` of them, last of
+/// `hit`. The rotations moved it by the length `moved` in all. It was at least `others` away from every capsule that it was
+/// not inside of.
 struct Round { first: u32, end: u32, hits: u32, hit: u32, moved: f32, others: f32 }
 
 @compute @workgroup_size(GROUP)
@@ -58,7 +62,7 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
            @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
     if (strand >= step.guides) { return; }
-    // Contacts are found about the root, so that roundings are those of what is near, see `lengths`.
+    // Contacts are computed relative to the root: small numbers have small rounding errors, see `lengths`.
     let root = positions[strand].xyz;
     // The parent before and after this kernel.
     var old_parent = root;
@@ -94,10 +98,11 @@ fn edge_length(vertex: u32, strand: u32) -> f32 {
     return rest_lengths[(vertex - 1u) * step.guides + strand];
 }
 
-/// A vertex that has left all capsules. `edge` is the edge from its parent before this kernel moved anything.
+/// Moves a vertex out of the capsules, within the limit on rotations. `edge` is the edge from its parent before this kernel
+/// moved anything.
 ///
-/// Every contact takes its own share of the displacement, as large as the vertex is deep: between two capsules a vertex is turned
-/// back and forth, and no single contact stands for all.
+/// Each contact removes its own part of the displacement; the part grows with the depth of the vertex. The contacts are not
+/// merged into one, because between two capsules a vertex is rotated back and forth.
 fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, edge: vec3<f32>, vertex: u32, strand: u32) -> Contact {
     let origin = in_head(root);
     var contact = Contact(start, false, vec3(0.0), 0.0, direction_or(edge, DOWN), 1.0);
@@ -128,20 +133,21 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, e
     return contact;
 }
 
-/// The round after this one. Where only one capsule held the vertex, and the others are too far away for the turns so far, that
-/// one is enough, unless the next round moves the vertex further.
+/// The round after this one. If the vertex was inside of one capsule only, and the rotations so far cannot have moved it to
+/// another, the next round tests that one capsule only; if the vertex moves too far in it, `resolved` tests the capsules
+/// after it too.
 fn following(round: Round) -> Round {
     let others = CERTAIN * round.others - round.moved;
     if (round.hits == 1u && others > 0.0) { return Round(round.hit, round.hit + 1u, 0u, 0u, 0.0, others); }
     return Round(step.first_capsule, step.end_capsule, 0u, 0u, 0.0, FAR);
 }
 
-/// Turns a vertex out of a capsule, and says how far it moves. `surface` is the displacement of the capsule's surface.
+/// Rotates a vertex out of a capsule and returns how far it moves. `surface` is the displacement of the capsule's surface.
 ///
-/// The turn starts from the present edge where the vertex is hardly inside, and from the edge before this kernel where it is deep
-/// inside. The present edge alone would not do: where a strand crosses a sphere nearly at right angles, each vertex would be
-/// turned to the other side than its parent, by errors that grow. The earlier edge alone would not do either: a vertex that is
-/// hardly inside is to be turned hardly at all.
+/// The rotation starts from the present edge if the vertex is only just inside, from the edge before this kernel if it is
+/// deep inside, and from a mix of the two between. Why not from the present edge always: where a strand crosses a sphere
+/// nearly at right angles, each vertex would be rotated to the opposite side of its parent, and the errors would grow. Why
+/// not from the earlier edge always: a vertex that is only just inside must be rotated only a little.
 fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere: vec4<f32>, surface: vec3<f32>) -> f32 {
     let before = direction_or((*contact).point - parent, DOWN);
     let apart = length * distance(before, (*contact).heading);
@@ -159,8 +165,8 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
     return sqrt(dot(pushed, pushed));
 }
 
-/// The displacement of a capsule's surface at a point about the root, as the point's own is counted: without the share of the
-/// root's motion that `velocity_shock` has added to the point's past.
+/// The displacement of a capsule's surface at a point, which is relative to the root. Like the displacement of a vertex it
+/// leaves out the share of the root's motion that `velocity_shock` has added to the vertex's previous position.
 fn surface_displacement(root: vec3<f32>, point: vec3<f32>, capsule: u32, strand: u32) -> vec3<f32> {
     let here = root + in_world(point);
     let own = in_head(here) - origin_of(capsule_motions[capsule], in_head(here));

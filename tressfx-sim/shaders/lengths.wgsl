@@ -16,16 +16,16 @@ import package::vector::{DOWN, NO_LENGTH, direction_or};
 // `CHUNK` vertices are loaded at once, into registers. One at a time, each would be waited for: a load cannot be moved up across
 // the stores of the vertices before it.
 
-/// Share of a vertex's placement that its parent's velocity answers for. The parent does not move when its child is placed;
-/// with no reaction at all strands gain energy without end, and at 1 it is never lost.
+/// Share of a vertex's placement that the velocity of its parent is corrected by. The parent does not move when its child is
+/// placed. Without the correction strands gain energy without end; with a share of 1 they never lose energy.
 const REACTION: f32 = 0.9;
 
-/// The vertices that the sweeps are at, about the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest length from
+/// The vertices that the sweeps are at, relative to the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest length from
 /// its parent.
 struct Window { vertices: array<vec4<f32>, SWEEPS + 1u>, lengths: array<f32, SWEEPS + 1u> }
 
-/// The last vertex that was placed, about the root; where it was before the sub-step, about the centre of the groom; the ways that it and the one before it have made, and the
-/// direction of its edge.
+/// The last vertex that was placed, relative to the root; where it was before the sub-step, relative to the centre of the groom;
+/// the displacements of it and of the vertex before it; and the direction of its edge.
 struct Placing { parent: vec4<f32>, past: vec3<f32>, way: vec3<f32>, way_before: vec3<f32>, direction: vec3<f32> }
 
 @compute @workgroup_size(GROUP)
@@ -34,8 +34,8 @@ fn lengths(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     let strand = thread_index(group, groups, lane);
     if (strand >= step.guides) { return; }
 
-    // Inside of the walk positions are about the root, so that roundings are those of so small a thing as a strand: where a
-    // vertex has come close to its parent, they grow by what the edge is short.
+    // In this loop positions are relative to the root, because small numbers have small rounding errors. Where a vertex is
+    // close to its parent, errors grow by the ratio of the rest length to the present length.
     var root = vec3(0.0);
     var window: Window;
     var placing = Placing(vec4(0.0), vec3(0.0), vec3(0.0), vec3(0.0), DOWN);
@@ -85,9 +85,10 @@ fn sweep(window: ptr<function, Window>, vertex: vec4<f32>, length: f32, t: u32) 
 }
 
 /// Places the next vertex, which the sweeps have left at `swept` and which was at `past` before the sub-step, `length` from its
-/// parent. Gives the parent's past as it is now: the parent's velocity answers for the placing, and its way is drawn to the mean
-/// of its neighbours'. Nothing else ends the zigzag from vertex to vertex in which strands that gravity compresses would tremble
-/// for ever. What a strand's longest bend loses by it is a hundredth in a sub-step, or less.
+/// parent. Returns the new previous position of the parent: its velocity is corrected for the placing, and its displacement is
+/// moved towards the mean of its neighbours' displacements. Only this ends the trembling of strands that gravity compresses, in
+/// which neighbouring vertices move in opposite directions. The longest wave along a strand loses a hundredth of its motion in a
+/// sub-step, or less.
 fn place(placing: ptr<function, Placing>, swept: vec4<f32>, length: f32, past: vec3<f32>, root: vec3<f32>,
          is_root: bool) -> vec3<f32> {
     let last = *placing;
@@ -99,7 +100,7 @@ fn place(placing: ptr<function, Placing>, swept: vec4<f32>, length: f32, past: v
     }
     let way = vertex.xyz - (past - root);
     let zigzag = last.way_before - last.way + select(vec3(0.0), way - last.way, vertex.w > 0.0);
-    // A pinned vertex has no way of its own: its child has one neighbour.
+    // A pinned vertex has no displacement of its own: its child has one neighbour.
     (*placing).way_before = select(way, last.way, last.parent.w > 0.0);
     (*placing).way = way;
     (*placing).past = past;

@@ -6,7 +6,8 @@ struct Step {
     head_rotation: vec4<f32>,
     /// The rotation that the head made during the sub-step.
     turn: vec4<f32>,
-    /// The way that the centre of the groom made with the head during the sub-step. All positions are about that centre.
+    /// The displacement of the centre of the groom, which moves with the head, during the sub-step. All positions are relative to
+    /// that centre.
     shift: vec3<f32>,
     /// Share of the velocity that damping leaves.
     velocity_kept: f32,
@@ -19,14 +20,14 @@ struct Step {
     global_stiffness: f32,
     /// Share of the strand, from the root, that the global shape reaches.
     global_range: f32,
-    /// Share of the way in one iteration, by both vertices of an edge together.
+    /// Share of the distance to the rest shape that one iteration moves, by both vertices of an edge together.
     local_stiffness: f32,
     /// Coefficient of sliding friction.
     friction: f32,
     tip_separation: f32,
     /// Share of the head's motion that the strands make at once.
     shock: f32,
-    /// Share by which the way of a vertex is drawn to the mean of its neighbours'.
+    /// Share by which the displacement of a vertex is moved towards the mean of its neighbours' displacements.
     smoothing: f32,
     /// Not 0: the strands go to their rest pose, at rest.
     reset: u32,
@@ -40,7 +41,7 @@ struct Step {
     follows: u32,
     /// Iterations of the local shape constraints.
     local_iterations: u32,
-    /// Share of the way to where the roots are at the end of the frame that they make in this sub-step.
+    /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
     root_share: f32,
     /// The first capsule that the section collides with.
     first_capsule: u32,

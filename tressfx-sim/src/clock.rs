@@ -1,4 +1,4 @@
-//! From frames of any length to sub-steps of one length.
+//! Divides frames of any length into sub-steps of one length.
 
 mod head_path;
 mod params;
@@ -20,26 +20,28 @@ pub use sub_step::{FramePlan, SubStep};
 pub struct Clock {
     params: ClockParams,
     bounds: Bounds,
-    /// What positions are about, in the rest pose.
+    /// The point of the rest pose that positions are relative to.
     center: Vec3,
     /// Simulated time, s.
     time: f64,
-    /// Time that is not simulated yet, s.
+    /// Time of earlier frames that is not simulated yet, s.
     behind: f64,
-    last_length: f64,
+    /// Length of the last sub-step, s.
+    last_sub_step: f64,
     /// The head at the end of the last frame; `None` asks for a reset.
     head: Option<Pose>,
-    /// The head at the start of the last frame and at that of the one before, and those frames' lengths, s.
+    /// For the last frame and for the one before it: the head at its start, and its length in s.
     before: [Option<(Pose, f64)>; 2],
     /// The head at the end of the last sub-step.
-    simulated: Pose,
+    simulated_head: Pose,
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
 }
 
-/// How far, as a factor, the lengths of two frames may differ for both to tell of the same motion.
-const ALIKE: f64 = 2.0;
-/// A share of a sub-step that is not worth waiting for: so that 2 s are as many sub-steps at any frame rate.
+/// Frames whose lengths differ by more than this factor do not count as one motion, see [`Clock::path`].
+const MAX_LENGTH_RATIO: f64 = 2.0;
+/// A sub-step is simulated if no more than this share of its length is missing, so that rounding does not delay it to the
+/// next frame: 2 s have the same number of sub-steps at any frame rate.
 const TOLERANCE: f64 = 1e-6;
 
 impl Clock {
@@ -49,17 +51,17 @@ impl Clock {
     /// See [`ClockParams::validate`].
     pub fn new(params: ClockParams, bounds: Bounds) -> Result<Self, ParamError> {
         params.validate()?;
-        let last_length = params.sub_step;
+        let last_sub_step = params.sub_step;
         Ok(Self {
             params,
             bounds,
             center: bounds.coarse_center(),
             time: 0.0,
             behind: 0.0,
-            last_length,
+            last_sub_step,
             head: None,
             before: [None; 2],
-            simulated: Pose::IDENTITY,
+            simulated_head: Pose::IDENTITY,
             velocities: None,
         })
     }
@@ -89,27 +91,28 @@ impl Clock {
         self.head = None;
     }
 
-    /// The point of the rest pose that positions are about.
+    /// The point of the rest pose that positions are relative to.
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// From positions after the last sub-step to the world: where the head carries the centre now, and how far it has turned
-    /// since that sub-step.
+    /// Transforms positions from after the last sub-step to the world: the translation is where the centre is now, the
+    /// rotation is that of the head since that sub-step.
     pub fn pose(&self) -> Pose {
-        let head = self.head.unwrap_or(self.simulated);
+        let head = self.head.unwrap_or(self.simulated_head);
         let translation = carried(self.center, &head).as_vec3();
-        Pose { rotation: turn(self.simulated.rotation, head.rotation), translation }
+        Pose { rotation: turn(self.simulated_head.rotation, head.rotation), translation }
     }
 
-    /// Cuts a frame. The head goes on during it as it did in the last two.
+    /// Divides a frame of `dt` seconds, at whose end the head is at `head`, into sub-steps. Within the frame the head
+    /// continues its motion of the last two frames.
     pub fn advance(&mut self, dt: f64, head: Pose) -> FramePlan {
         let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
         let start = if teleported { None } else { self.head };
         let mut frame = FramePlan { teleported, ..FramePlan::default() };
         let last = start.unwrap_or_else(|| {
             frame.reset = Some(head.rotation);
-            self.simulated = head;
+            self.simulated_head = head;
             self.velocities = None;
             self.before = [None; 2];
             head
@@ -123,24 +126,24 @@ impl Clock {
         let count = ((self.behind + simulated) / length + TOLERANCE).floor() as u32;
         for index in 1..=count {
             let into_frame = f64::from(index) * length - self.behind;
-            // A shorter sub-step than before makes sub-steps that end before the frame begins, or within one of no time.
+            // If the sub-step was made shorter, sub-steps may end before the frame begins, or in a frame of length 0.
             let share = if simulated > 0.0 { into_frame / simulated } else { 1.0 };
             let pose = path.at(share.max(0.0));
             self.time += length;
             frame.sub_steps.push(SubStep {
                 length,
-                length_ratio: length / self.last_length,
+                length_ratio: length / self.last_sub_step,
                 time: self.time,
                 rotation: pose.rotation,
-                turn: turn(self.simulated.rotation, pose.rotation),
-                shift: self.way(&self.simulated, &pose).as_vec3(),
+                turn: turn(self.simulated_head.rotation, pose.rotation),
+                shift: self.displacement(&self.simulated_head, &pose).as_vec3(),
                 acceleration,
-                heads: [self.simulated, pose],
+                heads: [self.simulated_head, pose],
                 shares: [share - if simulated > 0.0 { length / simulated } else { 0.0 }, share],
                 share_of_rest: (length / (simulated - into_frame + length)).min(1.0),
             });
-            self.simulated = pose;
-            self.last_length = length;
+            self.simulated_head = pose;
+            self.last_sub_step = length;
         }
         self.behind += simulated - f64::from(count) * length;
         self.head = Some(head);
@@ -151,15 +154,15 @@ impl Clock {
         frame
     }
 
-    /// The path of the head in a frame of which so much time is simulated.
+    /// The path of the head in a frame of which `simulated` seconds are simulated.
     fn path(&self, simulated: f64, last: Pose, head: Pose) -> HeadPath {
         let before = self.before.map(|before| before.map(|(head, dt)| Before { head, length: dt / simulated }));
-        let alike = |before: &Before| (1.0 / ALIKE..=ALIKE).contains(&before.length);
+        let alike = |before: &Before| (1.0 / MAX_LENGTH_RATIO..=MAX_LENGTH_RATIO).contains(&before.length);
         HeadPath::new(before.map(|before| before.filter(alike)), last, head)
     }
 
-    /// The way of the groom's centre.
-    fn way(&self, from: &Pose, to: &Pose) -> DVec3 {
+    /// The displacement of the groom's centre.
+    fn displacement(&self, from: &Pose, to: &Pose) -> DVec3 {
         if from == to { DVec3::ZERO } else { carried(self.center, to) - carried(self.center, from) }
     }
 

@@ -1,12 +1,14 @@
-//! The simulation of hair: kernels, their order, and their f64 references.
+//! The simulation of hair: kernels (compute shaders), their order, and the same computations in f64 on the CPU as a
+//! reference.
 //!
-//! The method is that of TressFX 4.1 with its defects mended: Verlet integration, global and local shape constraints,
-//! velocity shock propagation, length constraints, wind, capsules; in fixed sub-steps, and with exact lengths at the end of
-//! each. [`HairSim`] makes its buffers and pipelines once and then only writes passes into a
-//! [`PassList`](tressfx_core::pass::PassList); it never names a backend, submits or waits.
+//! The method is that of TressFX 4.1 with its errors corrected: Verlet integration, global and local shape constraints,
+//! velocity shock propagation, length constraints, wind, and collision with capsules. Sub-steps have a fixed length, and
+//! edges have their exact length at the end of each. [`HairSim`] makes its buffers and pipelines once and then only writes
+//! passes into a [`PassList`](tressfx_core::pass::PassList). It never names a backend, submits or waits.
 //!
-//! Every kernel `x` is one file `shaders/x.wgsl`, one function `kernel::x`, one f64 function [`mod@reference`]`::x` and one label
-//! `hair.sim.x`.
+//! A kernel has one name everywhere. `integrate`, for example, is the file `shaders/integrate.wgsl`, the Rust function in
+//! `kernel/integrate.rs` that makes its pass, the f64 function `integrate` in [`mod@reference`] and the label
+//! `hair.sim.integrate`.
 
 #![forbid(unsafe_code)]
 

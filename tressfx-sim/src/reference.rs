@@ -1,4 +1,4 @@
-//! The kernels once more, in f64 and one strand at a time: what the GPU is held against.
+//! The kernels in f64 on the CPU, one strand at a time. Tests compare the results of the GPU with these.
 //!
 //! Every function does what the kernel of the same name does, with the same [`Step`](crate::step::Step). Arrays are
 //! strand-major, as in [`Strands`](tressfx_core::strands::Strands).
@@ -36,11 +36,11 @@ pub use wind::wind;
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]
 pub struct Guide<'a> {
-    /// Rest position about the centre of the groom, and inverse mass, of every vertex.
+    /// Rest position relative to the centre of the groom, and inverse mass, of every vertex.
     pub rest: &'a [Vec4],
-    /// Rest length of the edge behind every vertex; 0 at the tip.
+    /// Rest length of the edge from every vertex to the next one; 0 at the tip.
     pub rest_lengths: &'a [f32],
-    /// Position of every vertex, about the centre of the groom.
+    /// Position of every vertex, relative to the centre of the groom.
     pub positions: &'a mut [DVec3],
     /// Position of every vertex one sub-step ago.
     pub previous: &'a mut [DVec3],

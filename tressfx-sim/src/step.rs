@@ -98,20 +98,20 @@ impl SectionInfo {
     }
 }
 
-/// The share of the way that a shape constraint moves a vertex in a step of `length` seconds.
+/// The share of the distance to its goal that a shape constraint moves a vertex in a sub-step of `length` seconds.
 pub fn spring_share(stiffness: f32, length: f64) -> f64 {
     let (stiffness, ratio) = (f64::from(stiffness), length / REFERENCE_STEP);
     let spring = stiffness * ratio * ratio;
     spring / (1.0 - stiffness + spring)
 }
 
-/// How strongly the ways of neighbouring vertices are drawn together in strands of so many vertices.
+/// How strongly the displacements of neighbouring vertices are smoothed in strands of `vertices` vertices.
 fn smoothing(vertices: u32) -> f32 {
     ((vertices * vertices) as f32 / 1000.0).min(0.25)
 }
 
 impl Step {
-    /// The strands go to rest on a head that is turned so.
+    /// Resets the strands to the rest pose, on a head with this rotation.
     pub fn reset(params: &SimParams, info: &SectionInfo, rotation: Quat) -> Self {
         let still = SubStep::at_rest(REFERENCE_STEP, rotation);
         Self { reset: 1, ..Self::new(params, info, &still, None) }

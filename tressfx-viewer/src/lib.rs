@@ -1,4 +1,4 @@
-//! What the program `tressfx` shows beside hair: an opaque scene in the light of a studio.
+//! The part of the program `tressfx` that others can use: an opaque scene behind the hair, and studio lights.
 
 #![forbid(unsafe_code)]
 

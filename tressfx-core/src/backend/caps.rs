@@ -71,8 +71,8 @@ impl Caps {
         }
     }
 
-    /// What there is of a need, and what is wanted.
-    fn measure(&self, need: Need) -> (u64, u64) {
+    /// How much a need asks for, and how much of it the device has; 1 and 0 for yes and no.
+    fn wanted_and_available(&self, need: Need) -> (u64, u64) {
         let have = |yes: bool| (1, u64::from(yes));
         match need {
             Need::Compute => have(self.compute),
@@ -102,7 +102,7 @@ impl Caps {
     /// [`Error::Unsupported`] with the first need that is not met.
     pub fn check(&self, label: Label, needs: &[Need]) -> Result<()> {
         for &need in needs {
-            let (want, have) = self.measure(need);
+            let (want, have) = self.wanted_and_available(need);
             if have < want {
                 return Err(Error::Unsupported { label, need, have });
             }

@@ -22,10 +22,10 @@ pub(crate) enum PipelineDesc {
     Raster(RasterDesc),
 }
 
-/// What a backend keeps its resources in: buffers as `B`, textures as `T`, pipelines as `P`.
+/// All resources of a backend with their descriptions: buffers as `B`, textures as `T`, pipelines as `P`.
 ///
-/// It holds lists and descriptions against the rules of the contract, keeps what was destroyed for as long as a list can name
-/// it, and counts memory: so that backends differ in what they do and not in what they allow.
+/// It checks lists and descriptions against the rules of the contract, keeps a destroyed resource for as long as a list can
+/// name it, and counts memory. So all backends allow and refuse the same things.
 #[derive(Debug)]
 pub struct Catalog<B, T, P> {
     caps: Caps,
@@ -35,14 +35,14 @@ pub struct Catalog<B, T, P> {
     memory: Memory,
 }
 
-/// What no list can name any more: the backend frees it once no recorded frame can use it.
+/// A destroyed resource that no list can name any more. The backend frees it once no recorded frame can use it.
 #[derive(Debug)]
 pub enum Swept<B, T, P> {
-    /// A buffer, and whether it is the backend's own.
+    /// A buffer: its id, and the backend's object.
     Buffer(BufferId, B),
-    /// A texture.
+    /// A texture, as [`Swept::Buffer`].
     Texture(TextureId, T),
-    /// A pipeline.
+    /// A pipeline, as [`Swept::Buffer`].
     Pipeline(PipelineId, P),
 }
 
@@ -63,35 +63,35 @@ impl<B, T, P> Catalog<B, T, P> {
         &self.caps
     }
 
-    /// Adds a buffer of the backend's own. To be [checked](BufferDesc::check) before it is made.
+    /// Adds a buffer that the backend made. [Check](BufferDesc::check) the description before you make it.
     pub fn add_buffer(&mut self, desc: &BufferDesc, value: B) -> BufferId {
         self.memory.add(desc.bytes);
         self.buffers.insert(Entry { desc: *desc, is_owned: true, value }).into()
     }
 
-    /// Adds a buffer that stays an engine's.
+    /// Adds a buffer that belongs to an engine; its memory does not count.
     pub fn import_buffer(&mut self, desc: &BufferDesc, value: B) -> BufferId {
         self.buffers.insert(Entry { desc: *desc, is_owned: false, value }).into()
     }
 
-    /// Adds a texture of the backend's own. To be [checked](TextureDesc::check) before it is made.
+    /// Adds a texture that the backend made. [Check](TextureDesc::check) the description before you make it.
     pub fn add_texture(&mut self, desc: &TextureDesc, value: T) -> TextureId {
         self.memory.add(desc.bytes());
         self.textures.insert(Entry { desc: *desc, is_owned: true, value }).into()
     }
 
-    /// Adds a texture that stays an engine's.
+    /// Adds a texture that belongs to an engine; its memory does not count.
     pub fn import_texture(&mut self, desc: &TextureDesc, value: T) -> TextureId {
         self.textures.insert(Entry { desc: *desc, is_owned: false, value }).into()
     }
 
-    /// Adds a compute pipeline. To be [checked](ComputeDesc::check) before it is made.
+    /// Adds a compute pipeline. [Check](ComputeDesc::check) the description before you make it.
     pub fn add_compute(&mut self, desc: &ComputeDesc, value: P) -> Kernel {
         let entry = Entry { desc: PipelineDesc::Compute(desc.clone()), is_owned: true, value };
         Kernel { pipeline: self.pipelines.insert(entry).into(), shader: desc.shader.clone() }
     }
 
-    /// Adds a raster pipeline. To be [checked](RasterDesc::check) before it is made.
+    /// Adds a raster pipeline. [Check](RasterDesc::check) the description before you make it.
     pub fn add_raster(&mut self, desc: &RasterDesc, value: P) -> RasterPipeline {
         let entry = Entry { desc: PipelineDesc::Raster(desc.clone()), is_owned: true, value };
         RasterPipeline { pipeline: self.pipelines.insert(entry).into(), shader: desc.shader.clone() }
@@ -114,7 +114,7 @@ impl<B, T, P> Catalog<B, T, P> {
         self.pipelines.retire(id.0);
     }
 
-    /// Takes out what was destroyed and what no list can name any more.
+    /// Takes out the destroyed resources that no list can name any more.
     pub fn sweep(&mut self) -> Vec<Swept<B, T, P>> {
         let buffers = self.buffers.sweep().into_iter().map(|(slot, entry)| Swept::Buffer(slot.into(), entry.value));
         let textures = self.textures.sweep().into_iter().map(|(slot, entry)| Swept::Texture(slot.into(), entry.value));
@@ -134,7 +134,7 @@ impl<B, T, P> Catalog<B, T, P> {
     /// What the backend keeps of a buffer.
     ///
     /// # Panics
-    /// If there is none. [`Catalog::check`] knows before.
+    /// If there is none. A list that has passed [`Catalog::check`] names only resources that are there.
     pub fn buffer(&self, id: BufferId) -> &B {
         &self.buffers.get(id.0).unwrap_or_else(|| panic!("{id:?} is no buffer of this backend")).value
     }
@@ -181,7 +181,7 @@ impl<B, T, P> Catalog<B, T, P> {
         self.textures.get(id.0).map(|entry| &entry.desc)
     }
 
-    /// What a resource takes in memory, whoever owns it; 0 if it is not there.
+    /// The size of a resource in bytes, whether the backend or an engine owns it; 0 if it is not there.
     pub fn bytes(&self, resource: Resource) -> u64 {
         match resource {
             Resource::Buffer(id) => self.buffer_desc(id).map_or(0, |desc| desc.bytes),
@@ -189,7 +189,7 @@ impl<B, T, P> Catalog<B, T, P> {
         }
     }
 
-    /// Whether a resource is there: not destroyed, or still to be named by a list.
+    /// Whether a resource is there: it was not destroyed, or not swept yet since a list may still name it.
     pub fn has(&self, resource: Resource) -> bool {
         match resource {
             Resource::Buffer(id) => self.buffers.get(id.0).is_some(),

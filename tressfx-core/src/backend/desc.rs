@@ -81,7 +81,7 @@ pub struct BufferDesc {
 }
 
 impl BufferDesc {
-    /// A buffer for these uses. Imports need it; what the library makes, the other constructors describe.
+    /// A buffer for these uses. It is meant for imported buffers; the library uses the other constructors for its own.
     pub fn new(label: Label, bytes: u64, uses: BufferUses) -> Self {
         Self { label, bytes, uses }
     }

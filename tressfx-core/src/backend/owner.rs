@@ -6,7 +6,8 @@ use crate::id::{BufferId, PipelineId, Resource, TextureId};
 use crate::pass::Ticket;
 use crate::shader::{Kernel, RasterPipeline};
 
-/// Everything that one part of the library has made on a backend: freed together, or at once where a later step fails.
+/// Everything that one part of the library has made on a backend. It is freed together; if a later step of making it fails,
+/// what was made before is freed at once.
 #[must_use = "what it owns is freed by `destroy` alone"]
 #[derive(Debug, Default)]
 pub struct Owner {
@@ -15,7 +16,7 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// Makes something of several resources and pipelines. If it fails, what was made before goes again.
+    /// Makes something of several resources and pipelines. If `make` fails, what it has made until then is freed.
     ///
     /// # Errors
     /// Those of `make`.
@@ -29,7 +30,7 @@ impl Owner {
     }
 
     /// Makes more, or replaces something: what `make` creates is owned from now on, and what it destroys no longer. If it
-    /// fails, what it has created goes again.
+    /// fails, what it has created is freed.
     ///
     /// # Errors
     /// Those of `make`.
@@ -52,7 +53,7 @@ impl Owner {
         made
     }
 
-    /// Leaves everything to the caller, who frees it one by one.
+    /// Forgets what is owned and frees nothing: the caller frees it.
     pub fn leave(self) {}
 
     /// Frees everything.

@@ -3,11 +3,12 @@
 use glam::{DQuat, DVec3};
 use tressfx_core::view::Pose;
 
-/// The path from one head pose to the next: the cubic through both and the two before, or the parabola or straight line through
-/// as many as are known.
+/// The path from one head pose to the next: the cubic through these two and the two before. If fewer are known, it is the
+/// parabola or the straight line through those.
 ///
-/// A straight line would miss an eighth of the acceleration times the square of the frame, and jerk at every frame. A head that
-/// stops at once overshoots by three sixteenths of its last way.
+/// A straight line would be off by an eighth of the acceleration times the square of the frame length, and the velocity
+/// would jump at every frame. With the cubic, a head that almost stops from one frame to the next overshoots by three
+/// sixteenths of its last displacement. If the two poses of a frame are equal, it does not move at all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HeadPath {
     from: Pose,
@@ -17,20 +18,21 @@ pub(crate) struct HeadPath {
     rotation: Cubic,
 }
 
-/// Newton's polynomial through four points, of which the one at 0 is 0: `t * (way + (t - 1) * (bend + (t + length) * twist))`.
+/// Newton's polynomial through four points: `t * (way + (t - 1) * (bend + (t + length) * twist))`. At `t` = 0 it is 0. The
+/// three vectors are its divided differences.
 #[derive(Clone, Copy, Debug)]
 struct Cubic {
     way: DVec3,
     bend: DVec3,
     twist: DVec3,
-    /// How long before 0 the third point is.
+    /// The third point is at `t = -length`.
     length: f64,
 }
 
-/// A share of the frame that is the end of it.
+/// From this share of the frame on the pose is that of its end.
 const END: f64 = 1.0 - 1e-6;
 
-/// The pose at the start of an earlier frame, and how long that frame was in lengths of this one.
+/// The pose at the start of an earlier frame, and the length of that frame divided by the length of this one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Before {
     pub(crate) head: Pose,
@@ -38,7 +40,7 @@ pub(crate) struct Before {
 }
 
 impl HeadPath {
-    /// The way from `from` to `to`, after the last frame and the one before it.
+    /// The path from `from` to `to`. `before` are the last frame and the one before it.
     pub(crate) fn new(before: [Option<Before>; 2], from: Pose, to: Pose) -> Self {
         let cubic = |of: &dyn Fn(&Pose) -> DVec3| {
             Cubic::new(before.map(|before| before.map(|before| (of(&before.head), before.length))), of(&to))
@@ -51,8 +53,8 @@ impl HeadPath {
         }
     }
 
-    /// The pose at a share `t` of the frame. The end is met exactly, and a head that is where it was has come to rest,
-    /// whatever it did before.
+    /// The pose at a share `t` of the frame. At the end it is exactly `to`. If `from` and `to` are equal the head does not
+    /// move, whatever it did before.
     pub(crate) fn at(&self, t: f64) -> Pose {
         if self.from == self.to || t >= END {
             return self.to;
@@ -66,7 +68,8 @@ impl HeadPath {
 }
 
 impl Cubic {
-    /// Through 0 at 0, through `way` at 1 and through the points of `before`, each a length before the next.
+    /// Through 0 at `t` = 0, through `way` at 1, and through the points of `before`: the first is its length before 0, the
+    /// second its length before the first.
     fn new(before: [Option<(DVec3, f64)>; 2], way: DVec3) -> Self {
         let bent = |point: DVec3, time: f64| (point + time * way) / (time * (time + 1.0));
         let [Some((last, length)), earlier] = before else {
@@ -82,7 +85,7 @@ impl Cubic {
     }
 }
 
-/// Axis times angle of the shorter rotation from one pose to another.
+/// The rotation from one pose to another as axis times angle, in the direction with the smaller angle.
 fn rotation_vector(from: &Pose, to: &Pose) -> DVec3 {
     let turn = (to.rotation.as_dquat() * from.rotation.as_dquat().inverse()).normalize();
     if turn.w < 0.0 { -turn } else { turn }.to_scaled_axis()

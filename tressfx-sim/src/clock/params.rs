@@ -1,22 +1,23 @@
-//! How time is cut.
+//! How frames are divided into sub-steps.
 
 use serde::{Deserialize, Serialize};
 
 use crate::params::{ParamError, within};
 
-/// How time is cut, and what counts as a teleport. The same for all sections.
+/// How frames are divided into sub-steps, and what counts as a teleport. These are the same for all sections of a groom.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClockParams {
-    /// Length of a sub-step, s. At 1/120 the local shape constraints are stiff and hair still comes to rest. They push the two
-    /// vertices of an edge and not the edge before it, which can add energy; sub-steps that are not too short take it out again.
-    /// Curls of medium stiffness tremble at 1/240.
+    /// Length of a sub-step, s. At 1/120 the local shape constraints are stiff and hair still comes to rest. They move the
+    /// two vertices of an edge but not the edge before it, which can add energy; integration with a sub-step that is not too
+    /// short removes it again. With 1/240, curls of medium stiffness tremble.
     pub sub_step: f64,
     /// The most time that one frame simulates, s; the rest is dropped, and reported.
     pub max_frame: f64,
     /// A head that moves further than this in one frame has teleported; in radii of the groom.
     pub teleport_distance: f32,
-    /// A head that turns further than this in one frame has teleported; radians, pi or more: never.
+    /// A head that turns further than this in one frame has teleported; in radians. With pi or more a turn is never a
+    /// teleport.
     pub teleport_angle: f32,
 }
 

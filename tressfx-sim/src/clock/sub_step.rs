@@ -1,4 +1,4 @@
-//! What a frame is cut into.
+//! The sub-steps of a frame.
 
 use glam::{Quat, Vec3};
 use tressfx_core::view::Pose;
@@ -8,29 +8,29 @@ use tressfx_core::view::Pose;
 pub struct SubStep {
     /// Its length, s.
     pub length: f64,
-    /// Length of this one over that of the one before: 1, but for the first one after a change of [`ClockParams`].
+    /// Its length divided by that of the sub-step before. It is 1 except after a change of [`ClockParams`].
     pub length_ratio: f64,
     /// Simulated time at its end, s.
     pub time: f64,
     /// The rotation of the head at its end.
     pub rotation: Quat,
-    /// The rotation of the head during it; the identity exactly if it has not turned.
+    /// The rotation that the head makes during it; exactly the identity if the head does not turn.
     pub turn: Quat,
-    /// The way of the groom's centre during it, units of the file; 0 exactly if the head has not moved.
+    /// The displacement of the groom's centre during it, in units of the file; exactly 0 if the head does not move.
     pub shift: Vec3,
     /// The acceleration of the head in this frame, the largest within the groom's bounds, units of the file / s^2.
     pub acceleration: f32,
     /// The head at its beginning and at its end.
     pub heads: [Pose; 2],
-    /// Its beginning and its end, as shares of the simulated part of the frame. The first may begin before the frame, at less
-    /// than 0.
+    /// Its beginning and its end, as shares of the simulated part of the frame. The first sub-step may begin before the
+    /// frame: its first share is then less than 0.
     pub shares: [f64; 2],
-    /// Of the time from its beginning to the end of the frame, the share that it takes.
+    /// Its length divided by the time from its beginning to the end of the frame.
     pub share_of_rest: f64,
 }
 
 impl SubStep {
-    /// A sub-step of a head that is turned so and does not move.
+    /// A sub-step in which the head has this rotation and does not move.
     pub fn at_rest(length: f64, rotation: Quat) -> Self {
         let head = Pose { rotation, translation: Vec3::ZERO };
         Self {
@@ -53,10 +53,10 @@ impl SubStep {
     }
 }
 
-/// What one frame is cut into.
+/// The sub-steps of one frame, and what happens before them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePlan {
-    /// The strands go to rest on a head that is turned so, before the sub-steps.
+    /// Before the sub-steps the strands are reset to the rest pose, on a head with this rotation.
     pub reset: Option<Quat>,
     /// Whether that is because of a teleport.
     pub teleported: bool,
