@@ -6,7 +6,6 @@ use anyhow::{Result, ensure};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record};
-use tressfx_core::id::Resource;
 use tressfx_core::pass::PassList;
 use tressfx_examples::{Hair, Stage, head};
 
@@ -45,10 +44,9 @@ pub(crate) struct Figures {
     pub(crate) messages: Vec<String>,
 }
 
-/// A groom and the ids of the images that it draws to.
+/// A groom.
 struct Groom {
     hair: Hair,
-    ids: [Resource; 2],
     /// Its first list carries its rest pose, and must run.
     has_run: bool,
 }
@@ -155,7 +153,6 @@ impl Stress {
             if self.grooms.len() == GROOMS {
                 let oldest = self.grooms.remove(0);
                 oldest.hair.destroy(&mut self.backend);
-                self.let_go(oldest.ids);
                 destroyed = true;
             }
             self.grow()?;
@@ -166,26 +163,17 @@ impl Stress {
     fn grow(&mut self) -> Result<()> {
         let Some(images) = &self.images else { return Ok(()) };
         let targets = images.import(&mut self.backend)?;
-        let ids = [targets.color.into(), targets.depth.into()];
         let view = &self.stages[self.size].view;
         let hair = Hair::new(&mut self.backend, &self.builtin, view, Format::Rgba16F, targets)?;
-        self.grooms.push(Groom { hair, ids, has_run: false });
+        self.grooms.push(Groom { hair, has_run: false });
         self.figures.grooms += 1;
         Ok(())
-    }
-
-    /// The ids of images that are still in use were destroyed.
-    fn let_go(&mut self, ids: [Resource; 2]) {
-        if let Some(images) = &self.images {
-            self.replaced.add(images.clone(), ids.into());
-        }
     }
 
     /// Puts other images, or none, in the place of those that there are.
     fn replace(&mut self, images: Option<Rc<Images>>) {
         if let Some(old) = std::mem::replace(&mut self.images, images) {
-            let ids = self.grooms.iter().flat_map(|groom| groom.ids).collect();
-            self.replaced.add(old, ids);
+            self.replaced.add(old);
         }
     }
 
@@ -195,7 +183,6 @@ impl Stress {
         self.replace(Some(images.clone()));
         for groom in &mut self.grooms {
             let targets = images.import(&mut self.backend)?;
-            groom.ids = [targets.color.into(), targets.depth.into()];
             groom.hair.resize(&mut self.backend, &self.stages[size].view, targets)?;
         }
         self.figures.resizes += 1;
