@@ -6,7 +6,9 @@ use anyhow::{Result, ensure};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record};
+use tressfx_core::glam::Mat4;
 use tressfx_core::pass::PassList;
+use tressfx_core::view::View;
 use tressfx_examples::{Hair, Stage, head};
 
 use crate::frames::Frames;
@@ -189,17 +191,16 @@ impl Stress {
         Ok(())
     }
 
-    /// Writes the lists of a frame.
+    /// Writes the lists of a frame. A minimised window has a view without pixels, and the hair goes on moving.
     fn write(&mut self, frame: u64) -> Result<()> {
-        if self.images.is_none() {
-            self.figures.minimised += 1;
-            return Ok(());
-        }
         let (stage, head) = (&self.stages[self.size], head(frame as f64 * DT));
+        let nothing = View::new(Mat4::IDENTITY, Mat4::IDENTITY, stage.view.depth(), [0, 0])?;
+        let view = if self.images.is_some() { stage.view } else { nothing };
+        self.figures.minimised += u64::from(view.is_empty());
         let mut lists = Vec::new();
         let mut must_run = false;
         for groom in &mut self.grooms {
-            lists.push(groom.hair.frame(DT, head, &stage.view, &stage.lights)?.clone());
+            lists.push(groom.hair.frame(DT, head, &view, &stage.lights)?.clone());
             must_run |= !std::mem::replace(&mut groom.has_run, true);
         }
         self.written = Written { lists, images: self.images.clone(), must_run };
