@@ -6,8 +6,9 @@ use anyhow::{Result, ensure};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::{Commands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record};
-use tressfx_core::id::Resource;
+use tressfx_core::glam::Mat4;
 use tressfx_core::pass::PassList;
+use tressfx_core::view::View;
 use tressfx_examples::{Hair, Stage, head};
 
 use crate::frames::Frames;
@@ -45,10 +46,9 @@ pub(crate) struct Figures {
     pub(crate) messages: Vec<String>,
 }
 
-/// A groom and the ids of the images that it draws to.
+/// A groom.
 struct Groom {
     hair: Hair,
-    ids: [Resource; 2],
     /// Its first list carries its rest pose, and must run.
     has_run: bool,
 }
@@ -155,7 +155,6 @@ impl Stress {
             if self.grooms.len() == GROOMS {
                 let oldest = self.grooms.remove(0);
                 oldest.hair.destroy(&mut self.backend);
-                self.let_go(oldest.ids);
                 destroyed = true;
             }
             self.grow()?;
@@ -166,26 +165,17 @@ impl Stress {
     fn grow(&mut self) -> Result<()> {
         let Some(images) = &self.images else { return Ok(()) };
         let targets = images.import(&mut self.backend)?;
-        let ids = [targets.color.into(), targets.depth.into()];
         let view = &self.stages[self.size].view;
         let hair = Hair::new(&mut self.backend, &self.builtin, view, Format::Rgba16F, targets)?;
-        self.grooms.push(Groom { hair, ids, has_run: false });
+        self.grooms.push(Groom { hair, has_run: false });
         self.figures.grooms += 1;
         Ok(())
-    }
-
-    /// The ids of images that are still in use were destroyed.
-    fn let_go(&mut self, ids: [Resource; 2]) {
-        if let Some(images) = &self.images {
-            self.replaced.add(images.clone(), ids.into());
-        }
     }
 
     /// Puts other images, or none, in the place of those that there are.
     fn replace(&mut self, images: Option<Rc<Images>>) {
         if let Some(old) = std::mem::replace(&mut self.images, images) {
-            let ids = self.grooms.iter().flat_map(|groom| groom.ids).collect();
-            self.replaced.add(old, ids);
+            self.replaced.add(old);
         }
     }
 
@@ -195,24 +185,22 @@ impl Stress {
         self.replace(Some(images.clone()));
         for groom in &mut self.grooms {
             let targets = images.import(&mut self.backend)?;
-            groom.ids = [targets.color.into(), targets.depth.into()];
             groom.hair.resize(&mut self.backend, &self.stages[size].view, targets)?;
         }
         self.figures.resizes += 1;
         Ok(())
     }
 
-    /// Writes the lists of a frame.
+    /// Writes the lists of a frame. A minimised window has a view without pixels, and the hair goes on moving.
     fn write(&mut self, frame: u64) -> Result<()> {
-        if self.images.is_none() {
-            self.figures.minimised += 1;
-            return Ok(());
-        }
         let (stage, head) = (&self.stages[self.size], head(frame as f64 * DT));
+        let nothing = View::new(Mat4::IDENTITY, Mat4::IDENTITY, stage.view.depth(), [0, 0])?;
+        let view = if self.images.is_some() { stage.view } else { nothing };
+        self.figures.minimised += u64::from(view.is_empty());
         let mut lists = Vec::new();
         let mut must_run = false;
         for groom in &mut self.grooms {
-            lists.push(groom.hair.frame(DT, head, &stage.view, &stage.lights)?.clone());
+            lists.push(groom.hair.frame(DT, head, &view, &stage.lights)?.clone());
             must_run |= !std::mem::replace(&mut groom.has_run, true);
         }
         self.written = Written { lists, images: self.images.clone(), must_run };

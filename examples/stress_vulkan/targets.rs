@@ -1,5 +1,6 @@
 //! The engine's images, which it draws to together with the hair, and which live until nobody uses them any more.
 
+use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::PoisonError;
 
@@ -21,14 +22,13 @@ pub(crate) struct Images {
     pub(crate) depth: vk::Image,
     pub(crate) copy: vk::Buffer,
     memory: Vec<Allocation>,
+    /// Under which the hair knows them, or knew them.
+    ids: RefCell<Vec<Resource>>,
 }
 
 /// Images that were replaced.
 #[derive(Default)]
-pub(crate) struct Replaced {
-    /// With the ids under which the hair knew them.
-    images: Vec<(Rc<Images>, Vec<Resource>)>,
-}
+pub(crate) struct Replaced(Vec<Rc<Images>>);
 
 impl Images {
     pub(crate) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self> {
@@ -48,7 +48,7 @@ impl Images {
             memory.push(bytes);
             copy
         };
-        Ok(Self { size, light, depth, copy, memory })
+        Ok(Self { size, light, depth, copy, memory, ids: RefCell::default() })
     }
 
     /// The images, as the hair finds them and leaves them. Each groom has ids of its own: one list leaves them as the next
@@ -59,24 +59,26 @@ impl Images {
         let depth = TextureDesc::new("engine.depth", self.size, Format::Depth32F).with_uses(uses);
         let (color, tested) = (EngineUse::COLOR_TARGET, EngineUse::DEPTH_TARGET);
         // SAFETY: they are images of this device, made so, and live until the backend says that it uses them no more.
-        unsafe {
+        let targets = unsafe {
             let color = hair.import_texture(self.light, &light, color, color)?;
-            Ok(Targets::new(color, hair.import_texture(self.depth, &depth, tested, tested)?))
-        }
+            Targets::new(color, hair.import_texture(self.depth, &depth, tested, tested)?)
+        };
+        self.ids.borrow_mut().extend([Resource::from(targets.color), targets.depth.into()]);
+        Ok(targets)
     }
 }
 
 impl Replaced {
-    pub(crate) fn add(&mut self, images: Rc<Images>, ids: Vec<Resource>) {
-        self.images.push((images, ids));
+    pub(crate) fn add(&mut self, images: Rc<Images>) {
+        self.0.push(images);
     }
 
     /// Frees what nobody uses any more.
     pub(crate) fn free(&mut self, gpu: &Gpu, hair: &VulkanBackend) {
-        let unused = |(images, ids): &mut (Rc<Images>, Vec<Resource>)| {
-            Rc::strong_count(images) == 1 && !ids.iter().any(|&id| hair.uses(id))
+        let unused = |images: &mut Rc<Images>| {
+            Rc::strong_count(images) == 1 && !images.ids.borrow().iter().any(|&id| hair.uses(id))
         };
-        for (images, _) in self.images.extract_if(.., unused) {
+        for images in self.0.extract_if(.., unused) {
             if let Some(images) = Rc::into_inner(images) {
                 gpu.destroy(images);
             }
@@ -84,7 +86,7 @@ impl Replaced {
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.images.is_empty()
+        self.0.is_empty()
     }
 }
 

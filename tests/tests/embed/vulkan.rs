@@ -12,6 +12,8 @@ use tressfx_core::id::{BufferId, TextureId};
 mod engine;
 #[path = "in_flight.rs"]
 mod in_flight;
+#[path = "refused.rs"]
+mod refused;
 #[path = "promises.rs"]
 mod promises;
 
