@@ -106,7 +106,7 @@ impl Known<'_> {
     /// A part of a buffer, in multiples of 4.
     fn range(&self, id: BufferId, offset: u64, bytes: u64, uses: BufferUses) -> Rule {
         let desc = self.buffer(id, uses)?;
-        if let Some(odd) = [offset, bytes].into_iter().find(|size| size % 4 != 0) {
+        if let Some(odd) = [offset, bytes].into_iter().find(|size| !size.is_multiple_of(4)) {
             return Err(format!("`{}`: {odd} is not a multiple of 4", desc.label));
         }
         within(desc, offset, bytes)
@@ -121,7 +121,7 @@ impl Known<'_> {
         if texture.format.is_depth() {
             return Err(format!("`{}` holds depth", texture.label));
         }
-        if offset % 8 != 0 || row_bytes % ROW_ALIGNMENT != 0 {
+        if !offset.is_multiple_of(8) || !row_bytes.is_multiple_of(ROW_ALIGNMENT) {
             return Err(format!(
                 "offset {offset} or rows of {row_bytes} bytes: multiples of 8 and {ROW_ALIGNMENT} are"
             ));

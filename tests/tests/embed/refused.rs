@@ -54,7 +54,8 @@ fn everything(backend: &mut dyn Backend, shaders: &[Arc<Shader>; 2]) -> Result<P
     let desc = RasterDesc::new(shaders[1].clone()).target(Format::Rgba8, Blend::Over);
     let pipeline = backend.create_raster(&desc)?;
     let sampler = Sampler::Linear.into();
-    let named = [("factor", factor.into()), ("picture", picture.into()), ("linear", sampler), ("values", values.into())];
+    let named =
+        [("factor", factor.into()), ("picture", picture.into()), ("linear", sampler), ("values", values.into())];
     let bindings = kernel.bind(&named)?;
     let mut list = PassList::new();
     list.upload(factor, 0, &[1.0f32; 4]);

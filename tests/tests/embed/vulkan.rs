@@ -12,10 +12,10 @@ use tressfx_core::id::{BufferId, TextureId};
 mod engine;
 #[path = "in_flight.rs"]
 mod in_flight;
-#[path = "refused.rs"]
-mod refused;
 #[path = "promises.rs"]
 mod promises;
+#[path = "refused.rs"]
+mod refused;
 
 use engine::{Engine, whole};
 

@@ -55,10 +55,10 @@ impl Known<'_> {
         let desc = self.buffer(id, uses)?;
         let bytes = bytes.unwrap_or_else(|| desc.bytes.saturating_sub(offset));
         within(desc, offset, bytes)?;
-        if offset % caps.binding_alignment.max(1) != 0 {
+        if !offset.is_multiple_of(caps.binding_alignment.max(1)) {
             return Err(format!("offset {offset} is not a multiple of {}", caps.binding_alignment));
         }
-        if bytes % 4 != 0 || bytes < slot.min_bytes.max(4) {
+        if !bytes.is_multiple_of(4) || bytes < slot.min_bytes.max(4) {
             return Err(format!("{bytes} bytes of `{}`, the shader reads {}", desc.label, slot.min_bytes.max(4)));
         }
         if bytes > most {

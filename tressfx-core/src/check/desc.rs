@@ -12,7 +12,7 @@ impl BufferDesc {
     /// # Errors
     /// [`Error::Rule`] for a size that is none, [`Error::Unsupported`] for one that the device does not have.
     pub fn check(&self, caps: &Caps) -> Result<()> {
-        if self.bytes == 0 || self.bytes % 4 != 0 {
+        if self.bytes == 0 || !self.bytes.is_multiple_of(4) {
             return Err(Error::rule(self.label, format!("{} bytes: a multiple of 4, at least 4, is", self.bytes)));
         }
         if self.uses == BufferUses::default() {
