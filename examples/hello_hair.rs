@@ -46,7 +46,7 @@ fn main() -> Result<()> {
     // The head, and the hair over it.
     let head = MeshDraw { mesh: &head, surface: Surface::default(), pose: Pose::IDENTITY };
     let draws = [SectionDraw::new(&hair, &material, sim.pose())];
-    renderer.reserve(&mut gpu, &view, &draws)?;
+    renderer.grow_to_predicted(&mut gpu, &view, &draws)?;
     scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head])?;
     renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws)?;
     let picture = list.read_texture(targets.color);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use tressfx_asset::builtin::Builtin;
 use tressfx_backend_vulkan::ash::vk;
-use tressfx_backend_vulkan::{Commands, VulkanBackend};
+use tressfx_backend_vulkan::{EngineCommands, VulkanBackend};
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
 use tressfx_core::backend::{Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
@@ -105,7 +105,7 @@ fn vulkan(criterion: &mut Criterion) {
                 device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).expect("a reset");
                 device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default()).expect("a beginning");
                 let before = backend.recorded();
-                let mut encoder = Commands::new(&backend, commands);
+                let mut encoder = EngineCommands::new(&backend, commands);
                 let start = Instant::now();
                 backend.record(&mut encoder, &list).expect("a recording");
                 let time = start.elapsed();

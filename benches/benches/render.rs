@@ -130,10 +130,10 @@ impl Stage {
         while measured < FRAMES {
             let warm = start.elapsed() > WARM_UP;
             let mut list = self.record(section)?;
-            let ticket = self.renderer.read_counters(&mut list, 0);
+            let ticket = self.renderer.request_counters(&mut list, 0);
             backend.run(&list)?;
             counters = Counters::from_bytes(&backend.read(ticket).ready().ok_or("no counters")?);
-            self.renderer.observe(backend, &counters)?;
+            self.renderer.grow_to_measured(backend, &counters)?;
             measured += usize::from(warm);
             for (index, timing) in backend.timings().into_iter().enumerate().filter(|_| warm) {
                 let runs = &mut times.entry(index).or_insert((timing.label, Vec::new())).1;
@@ -147,7 +147,7 @@ impl Stage {
     fn error(mut self, backend: &mut WgpuBackend, section: &ShadedStrands, strands: &Strands) -> Result<f64, Failure> {
         let material = Material::default();
         let draw = SectionDraw::new(section, &material, Pose::IDENTITY);
-        self.renderer.reserve(backend, &self.view, &[draw])?;
+        self.renderer.grow_to_predicted(backend, &self.view, &[draw])?;
         let mut list = self.record(section)?;
         let ticket = list.read_texture(self.targets.color);
         backend.run(&list)?;

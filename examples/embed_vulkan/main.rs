@@ -11,7 +11,7 @@ mod pipeline;
 mod sets;
 
 use anyhow::{Result, ensure};
-use tressfx_backend_vulkan::Commands;
+use tressfx_backend_vulkan::EngineCommands;
 use tressfx_core::backend::{Backend, Format, Record};
 use tressfx_examples::{Args, Hair, Stage, head};
 
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
         unsafe { gpu.retire(engine.finished()) };
         engine.draw_stage(commands);
         // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
-        let mut hair_commands = unsafe { Commands::new(&gpu, commands) };
+        let mut hair_commands = unsafe { EngineCommands::new(&gpu, commands) };
         gpu.record(&mut hair_commands, hair.frame(DT, head, &stage.view, &stage.lights)?)?;
         engine.develop(commands);
         engine.submit(commands, gpu.recorded())?;

@@ -123,7 +123,7 @@ impl Backend for CpuBackend {
         self.reads.remove(&ticket).map_or(ReadBack::Unknown, ReadBack::Ready)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
+    fn cancel_read(&mut self, ticket: Ticket) {
         self.reads.remove(&ticket);
     }
 

@@ -18,7 +18,7 @@ fn main() -> Result<()> {
     let desc = BufferDesc::storage("numbers", 16);
     let [numbers, copy] = [backend.create_buffer(&desc)?, backend.create_buffer(&desc)?];
 
-    // Commands take effect in the order of the list.
+    // EngineCommands take effect in the order of the list.
     let mut list = PassList::new();
     list.upload(numbers, 0, &[1u32, 2, 3, 4]);
     list.clear(numbers, 4, 4);

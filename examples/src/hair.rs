@@ -50,7 +50,7 @@ impl Hair {
         let section = ShadedStrands::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
         let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size(), format))?;
         let material = Material::default();
-        renderer.reserve(backend, view, &[SectionDraw::new(&section, &material, sim.pose())])?;
+        renderer.grow_to_predicted(backend, view, &[SectionDraw::new(&section, &material, sim.pose())])?;
         Ok(Self { sim, colliders, section, material, renderer, targets, list, counters: VecDeque::new() })
     }
 
@@ -66,7 +66,7 @@ impl Hair {
         self.sim.step(&mut self.list, &StepInput::new(dt, head).with_colliders(&self.colliders))?;
         let draws = [SectionDraw::new(&self.section, &self.material, self.sim.pose())];
         self.renderer.draw(&mut self.list, &[ViewDraw::new(view, lights, self.targets)], &draws)?;
-        self.counters.push_back(self.renderer.read_counters(&mut self.list, 0));
+        self.counters.push_back(self.renderer.request_counters(&mut self.list, 0));
         Ok(&self.list)
     }
 
@@ -84,7 +84,7 @@ impl Hair {
             self.counters.pop_front();
             // A frame that was thrown away has counted nothing.
             if let ReadBack::Ready(bytes) = read {
-                self.renderer.observe(backend, &Counters::from_bytes(&bytes))?;
+                self.renderer.grow_to_measured(backend, &Counters::from_bytes(&bytes))?;
             }
         }
         Ok(())
@@ -104,7 +104,7 @@ impl Hair {
         [old.color, old.depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
         self.renderer.resize(backend, view.size())?;
         let draw = SectionDraw::new(&self.section, &self.material, self.sim.pose());
-        Ok(self.renderer.reserve(backend, view, &[draw])?)
+        Ok(self.renderer.grow_to_predicted(backend, view, &[draw])?)
     }
 
     /// Frees everything. Of the engine's textures only the ids go.

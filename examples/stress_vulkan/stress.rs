@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use anyhow::{Result, ensure};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::{Commands, VulkanBackend};
+use tressfx_backend_vulkan::{EngineCommands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record};
 use tressfx_core::glam::Mat4;
 use tressfx_core::pass::PassList;
@@ -120,7 +120,7 @@ impl Stress {
         let raw = self.frames.begin(&self.gpu, frame, images.as_ref())?;
         let before = self.backend.recorded();
         // SAFETY: it is being recorded, and is submitted or discarded below.
-        let mut commands = unsafe { Commands::new(&self.backend, raw) };
+        let mut commands = unsafe { EngineCommands::new(&self.backend, raw) };
         lists.iter().try_for_each(|list| self.backend.record(&mut commands, list))?;
         drop(commands);
         if frame % 17 == 0 && !must_run {

@@ -18,7 +18,7 @@ use engine::Engine;
 use gpu::Gpu;
 use inside::{import, share};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::{Commands, VulkanBackend};
+use tressfx_backend_vulkan::{EngineCommands, VulkanBackend};
 use tressfx_core::backend::{Backend, Format, Record, Run};
 use tressfx_core::view::Pose;
 use tressfx_examples::{Hair, Stage, head};
@@ -44,7 +44,7 @@ fn frame(engine: &mut Engine, gpu: &mut VulkanBackend, hair: &mut Hair, stage: &
     unsafe { gpu.retire(engine.finished()) };
     engine.draw_stage(commands);
     // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
-    let mut hair_commands = unsafe { Commands::new(gpu, commands) };
+    let mut hair_commands = unsafe { EngineCommands::new(gpu, commands) };
     gpu.record(&mut hair_commands, hair.frame(DT, head, &stage.view, &stage.lights).unwrap()).unwrap();
     engine.develop(commands);
     engine.submit(commands, gpu.recorded()).unwrap();

@@ -103,8 +103,8 @@ impl<B: Backend> Backend for Failing<B> {
         self.inner.read(ticket)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
-        self.inner.give_up(ticket);
+    fn cancel_read(&mut self, ticket: Ticket) {
+        self.inner.cancel_read(ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {

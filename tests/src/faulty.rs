@@ -35,7 +35,7 @@ pub enum Fault {
     StaleIdsLive,
     /// What is destroyed is gone for lists that were begun before, too.
     DestroyedAtOnce,
-    /// Commands that name resources of another backend are left out.
+    /// EngineCommands that name resources of another backend are left out.
     ForeignIdsIgnored,
     /// Lists that break a rule are left out.
     RulesIgnored,
@@ -296,10 +296,10 @@ impl<B: Backend> Backend for Faulty<B> {
         })
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
+    fn cancel_read(&mut self, ticket: Ticket) {
         self.given_up.insert(ticket);
         if self.fault != Fault::GivenUpIsRead {
-            self.inner.give_up(ticket);
+            self.inner.cancel_read(ticket);
         }
     }
 

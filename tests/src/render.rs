@@ -280,12 +280,14 @@ impl Screen {
         let draws: Vec<_> =
             pairs.map(|(strands, groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
         if self.may_grow {
-            views.iter().for_each(|view| self.renderer.reserve(&mut *self.backend, view, &draws).expect("a pool"));
+            views
+                .iter()
+                .for_each(|view| self.renderer.grow_to_predicted(&mut *self.backend, view, &draws).expect("a pool"));
         }
         let targets = self.targets();
         let drawn: Vec<_> = views.iter().map(|view| ViewDraw::new(view, &self.lights, targets)).collect();
         self.renderer.draw(&mut list, &drawn, &draws).expect("views that can be drawn");
-        let counters = self.renderer.read_counters(&mut list, 0);
+        let counters = self.renderer.request_counters(&mut list, 0);
         let picture = list.read_texture(self.color);
         let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
         let counters = Counters::from_bytes(&self.backend.read(counters).ready().expect("it has run"));

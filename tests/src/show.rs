@@ -125,7 +125,7 @@ impl<B: Run> Show<B> {
         let desc = RenderDesc::new(scene.size, TARGET).technique(PpllDesc::default().k(scene.k));
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
         let draw = SectionDraw::new(&section, &scene.material, sim.pose());
-        renderer.reserve(gpu, &view, &[draw]).expect("a pool");
+        renderer.grow_to_predicted(gpu, &view, &[draw]).expect("a pool");
         let body = ScenePass::new(gpu, TARGET, view.depth()).expect("a scene pass");
         gpu.run(&uploads).expect("the uploads run");
         let lights = lights();
@@ -164,7 +164,7 @@ impl<B: Run> Show<B> {
     /// The picture of the last frame, four bytes a pixel, and what was drawn in it.
     pub fn picture(&mut self) -> (Vec<u8>, Counters) {
         let mut list = PassList::new();
-        let counters = self.renderer.read_counters(&mut list, 0);
+        let counters = self.renderer.request_counters(&mut list, 0);
         let picture = list.read_texture(self.targets.color);
         let picture = run_and_read(&mut self.backend, &list, picture);
         (picture, Counters::from_bytes(&self.backend.read(counters).ready().expect("the list has run")))

@@ -307,7 +307,7 @@ fn check(world: &World, steps: &[Step]) -> Result<(), String> {
     let (mut hazards, mut memory) = (Hazards::default(), Memory::default());
     for (place, step) in steps.iter().enumerate() {
         let (command, accesses) = world.command(step);
-        let waits = hazards.before(&command);
+        let waits = hazards.waits_before(&command);
         for (resource, kinds) in accesses {
             let at = |why: String| format!("command {place}, {step:?}: {why}");
             let mut of_resource = waits.iter().filter(|wait| wait.resource == resource);

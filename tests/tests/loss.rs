@@ -36,7 +36,7 @@ fn hold<B: Run>(backend: B, lose: impl FnOnce(&mut B)) {
     // The rules hold as before.
     list.clear(buffer, 0, 65);
     assert!(matches!(show.backend.run(&list), Err(Error::Rule { .. } | Error::DeviceLost { .. })));
-    show.backend.give_up(ticket);
+    show.backend.cancel_read(ticket);
     show.backend.timings();
     show.backend.destroy(buffer.into());
     assert_eq!(show.backend.memory().bytes, bytes - 64);

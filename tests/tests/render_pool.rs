@@ -71,12 +71,12 @@ fn the_pool_is_predicted_and_then_measured() {
     screen.may_grow = false;
     let dropping = screen.hair(&[&groom]);
     assert!(dropping.counters.dropped > 0);
-    screen.renderer.observe(&mut *screen.backend, &dropping.counters).unwrap();
+    screen.renderer.grow_to_measured(&mut *screen.backend, &dropping.counters).unwrap();
     let complete = screen.hair(&[&groom]);
     assert_eq!(complete.counters.dropped, 0, "one frame is enough to know");
     assert!(complete.bytes == picture.bytes);
     let grown = screen.renderer.capacity();
-    screen.renderer.observe(&mut *screen.backend, &complete.counters).unwrap();
+    screen.renderer.grow_to_measured(&mut *screen.backend, &complete.counters).unwrap();
     assert_eq!(screen.renderer.capacity(), grown, "enough is enough");
 }
 
@@ -84,11 +84,11 @@ fn the_pool_is_predicted_and_then_measured() {
 fn the_caller_and_the_device_limit_the_pool() {
     let Some(mut screen) = screen(|setup| setup.technique.max_node_bytes = 16 * 7000) else { return };
     let huge = tressfx_render::Counters { fragments: u32::MAX, ..Default::default() };
-    screen.renderer.observe(&mut *screen.backend, &huge).unwrap();
+    screen.renderer.grow_to_measured(&mut *screen.backend, &huge).unwrap();
     assert_eq!(screen.renderer.capacity(), 7000);
     let mut backend = NullBackend::default();
     let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
-    renderer.observe(&mut backend, &huge).unwrap();
+    renderer.grow_to_measured(&mut backend, &huge).unwrap();
     assert_eq!(u64::from(renderer.capacity()) * 16, Caps::webgpu_default().max_storage_binding_bytes);
 }
 
@@ -164,7 +164,7 @@ fn a_counter_that_is_full_stays_full_and_says_so() {
     for limit in [1, 64, 4096, all.fragments / 2, all.fragments, all.fragments + 1] {
         let Some(mut screen) = screen(|setup| setup.technique.count_limit = limit) else { return };
         let huge = tressfx_render::Counters { fragments: u32::MAX, ..Default::default() };
-        screen.renderer.observe(&mut *screen.backend, &huge).unwrap();
+        screen.renderer.grow_to_measured(&mut *screen.backend, &huge).unwrap();
         assert_eq!(screen.renderer.capacity(), limit, "there is no node that cannot be counted");
         let picture = screen.hair(&[&groom]);
         let counters = picture.counters;
@@ -188,7 +188,7 @@ fn a_pool_that_grows_between_frames_in_flight_leaves_them_whole() {
     let (small, capacity) = (screen.hair(&[&groom]).counters, screen.renderer.capacity());
     assert_eq!(small.dropped, small.fragments - capacity);
     let before = screen.backend_memory();
-    screen.renderer.observe(&mut *screen.backend, &small).unwrap();
+    screen.renderer.grow_to_measured(&mut *screen.backend, &small).unwrap();
     let grown = screen.renderer.capacity();
     assert!(grown > small.fragments);
     assert_eq!(screen.backend_memory() - before, 16 * u64::from(grown - capacity), "the old nodes are gone");

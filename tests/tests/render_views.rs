@@ -152,7 +152,7 @@ fn views_of_one_frame_have_their_own_counters() {
     let (targets, lights) = (screen.targets(), screen.lights.clone());
     let views = [&away, &empty, &view].map(|view| ViewDraw::new(view, &lights, targets));
     screen.renderer.draw(&mut list, &views, &[draw]).unwrap();
-    let tickets = [0, 1, 2].map(|view| screen.renderer.read_counters(&mut list, view));
+    let tickets = [0, 1, 2].map(|view| screen.renderer.request_counters(&mut list, view));
     screen.backend.run(&list).unwrap();
     let counters = tickets
         .map(|ticket| tressfx_render::Counters::from_bytes(&screen.backend.read(ticket).ready().expect("it has run")));

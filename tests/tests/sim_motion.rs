@@ -220,7 +220,7 @@ fn references_agree_on_what_a_frame_is() {
     let motion = Motion::still(&strands);
     let report = reference.step(&motion.input(0.0, 0.0)).unwrap();
     assert!(report.reset && report.sub_steps == 0);
-    let rest = wide(&relative_to(strands.guide_bounds().coarse_center(), &strands.rest_of_all()));
+    let rest = wide(&relative_to(strands.guide_bounds().rounded_center(), &strands.rest_of_all()));
     let error = reference.positions(0).iter().zip(rest).map(|(one, other)| one.distance(other)).fold(0.0, f64::max);
     assert!(error < 1e-7, "{error}");
 }

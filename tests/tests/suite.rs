@@ -5,7 +5,7 @@ mod wgpu {
     use tressfx_backend_wgpu::WgpuBackend;
 
     tressfx_conformance::suite!(|| {
-        let _alone = tressfx_backend_vulkan::alone();
+        let _alone = tressfx_backend_vulkan::lock_loader();
         WgpuBackend::headless()
     });
 

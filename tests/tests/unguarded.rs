@@ -74,8 +74,8 @@ impl Backend for Unguarded {
         self.0.read(ticket)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
-        self.0.give_up(ticket);
+    fn cancel_read(&mut self, ticket: Ticket) {
+        self.0.cancel_read(ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {

@@ -5,21 +5,21 @@ use tressfx_core::hazards::{Access, Layout};
 
 use crate::device::Gpu;
 use crate::resource::Texture;
-use crate::tables::{Scope, image_layout, scope, whole, writes};
+use crate::tables::{StageAccess, image_layout, scope, whole, writes};
 use crate::uses::EngineUse;
 
 /// The barrier before one command. Buffers share one memory barrier; each texture has its own, for its layout.
 #[derive(Debug, Default)]
 pub(crate) struct Barrier {
-    before: Scope,
-    after: Scope,
+    before: StageAccess,
+    after: StageAccess,
     images: Vec<vk::ImageMemoryBarrier2<'static>>,
     left_out: bool,
 }
 
 impl Barrier {
     /// A buffer is used otherwise.
-    pub(crate) fn buffer(&mut self, before: Scope, after: Scope) {
+    pub(crate) fn buffer(&mut self, before: StageAccess, after: StageAccess) {
         self.before = (self.before.0 | before.0, self.before.1 | writes(before.1));
         self.after = (self.after.0 | after.0, self.after.1 | after.1);
     }
@@ -44,7 +44,12 @@ impl Barrier {
         self.image(texture, (scope(before, Some(texture.format)), layout), ((left.stage, left.access), left.layout));
     }
 
-    fn image(&mut self, texture: &Texture, before: (Scope, vk::ImageLayout), after: (Scope, vk::ImageLayout)) {
+    fn image(
+        &mut self,
+        texture: &Texture,
+        before: (StageAccess, vk::ImageLayout),
+        after: (StageAccess, vk::ImageLayout),
+    ) {
         self.images.push(
             vk::ImageMemoryBarrier2::default()
                 .src_stage_mask(before.0.0)

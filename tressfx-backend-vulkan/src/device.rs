@@ -12,7 +12,7 @@ use tressfx_core::shader::SpirvOptions;
 
 use crate::faults::Faults;
 use crate::instance::{Instance, describe, names};
-use crate::label::alone;
+use crate::label::lock_loader;
 
 /// How a device of one's own is opened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -130,7 +130,7 @@ impl Gpu {
     }
 
     pub(crate) fn open(options: &VulkanOptions) -> Result<Self> {
-        let _alone = alone();
+        let _alone = lock_loader();
         let started = Instance::start(options.validation)?;
         let (physical_device, device, queue_family, enabled) = open_device(&started, options)?;
         // SAFETY: the family has one queue at least, and it was asked for.
@@ -217,7 +217,7 @@ impl Gpu {
         caps.binding_alignment =
             limits.min_storage_buffer_offset_alignment.max(limits.min_uniform_buffer_offset_alignment).max(4);
         caps.max_buffer_bytes = more.max_buffer_size;
-        caps.max_texture_edge = limits.max_image_dimension2_d;
+        caps.max_texture_size = limits.max_image_dimension2_d;
         caps.max_color_targets = limits.max_color_attachments.min(limits.max_fragment_output_attachments);
         caps.max_group_threads = limits.max_compute_work_group_invocations;
         caps.max_group_size = limits.max_compute_work_group_size;
@@ -244,7 +244,7 @@ impl Drop for Gpu {
         if let Ok(empty) = Allocator::new(&memory_of(&self.instance, self.physical_device, &self.device)) {
             drop(std::mem::replace(&mut *allocator, empty));
         }
-        let _alone = alone();
+        let _alone = lock_loader();
         // SAFETY: all that was made from the device is gone, since it held this.
         unsafe { self.device.destroy_device(None) };
         drop(instance);

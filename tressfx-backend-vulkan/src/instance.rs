@@ -7,10 +7,10 @@ use std::sync::OnceLock;
 use ash::{ext, vk};
 use tressfx_core::error::{Error, Result};
 
-use crate::label::alone;
+use crate::label::lock_loader;
 use crate::validation::{self, Messages};
 
-/// An instance of our own. To be made, asked for adapters and dropped [`alone`].
+/// An instance of our own. To be made, asked for adapters and dropped [`lock_loader`].
 pub(crate) struct Instance {
     pub(crate) instance: ash::Instance,
     /// Whether VK_EXT_debug_utils is enabled.
@@ -122,7 +122,7 @@ impl Drop for Instance {
 
 /// The adapters of the system with Vulkan 1.3, as people name them: `NAME (raw Vulkan VERSION, kind)`.
 pub fn adapters() -> Vec<String> {
-    let _alone = alone();
+    let _alone = lock_loader();
     let started = Instance::start(false);
     started.map_or_else(|_| Vec::new(), |started| started.adapters().into_iter().map(|(_, name)| name).collect())
 }

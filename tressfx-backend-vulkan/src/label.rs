@@ -19,24 +19,24 @@ thread_local! {
     static HELD: RefCell<(u32, Option<RwLockWriteGuard<'static, ()>>)> = const { RefCell::new((0, None)) };
 }
 
-/// See [`alone`]. It stays on its thread.
+/// See [`lock_loader`]. It stays on its thread.
 #[derive(Debug)]
 #[must_use = "others are kept out for as long as it is held"]
-pub struct Alone(PhantomData<*const ()>);
+pub struct LoaderLock(PhantomData<*const ()>);
 
 /// Held by an engine that makes, asks or destroys instances or devices of its own while a backend is used on another thread: no
 /// object is named meanwhile. A thread may hold several.
-pub fn alone() -> Alone {
+pub fn lock_loader() -> LoaderLock {
     let is_alone = HELD.with_borrow(|held| held.0 > 0);
     let guard = (!is_alone).then(|| OPEN.write().unwrap_or_else(PoisonError::into_inner));
     HELD.with_borrow_mut(|held| {
         held.0 += 1;
         held.1 = held.1.take().or(guard);
     });
-    Alone(PhantomData)
+    LoaderLock(PhantomData)
 }
 
-impl Drop for Alone {
+impl Drop for LoaderLock {
     fn drop(&mut self) {
         HELD.with_borrow_mut(|held| {
             held.0 -= 1;
@@ -83,8 +83,8 @@ mod tests {
 
     #[test]
     fn a_thread_that_is_alone_may_be_alone_again_and_others_wait_for_the_last() {
-        let (outer, inner) = (alone(), alone());
-        let other = std::thread::spawn(|| drop(alone()));
+        let (outer, inner) = (lock_loader(), lock_loader());
+        let other = std::thread::spawn(|| drop(lock_loader()));
         drop(outer);
         std::thread::sleep(std::time::Duration::from_millis(50));
         assert!(!other.is_finished(), "the second is still held");

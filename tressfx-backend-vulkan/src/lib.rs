@@ -58,8 +58,8 @@ pub use device::{Enabled, VulkanDesc, VulkanOptions};
 /// The version of the crate `gpu-allocator` that this backend is built with.
 pub use gpu_allocator;
 pub use instance::adapters;
-pub use label::{Alone, alone};
-pub use record::Commands;
+pub use label::{LoaderLock, lock_loader};
+pub use record::EngineCommands;
 pub use uses::EngineUse;
 
 type Resources = Catalog<resource::Buffer, resource::Texture, pipeline::Pipeline>;
@@ -194,7 +194,7 @@ impl Backend for VulkanBackend {
         self.take_read(ticket)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
+    fn cancel_read(&mut self, ticket: Ticket) {
         self.forget_read(ticket);
     }
 

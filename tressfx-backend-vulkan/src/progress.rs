@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use tressfx_core::backend::Swept;
+use tressfx_core::backend::Unlisted;
 use tressfx_core::id::{PipelineId, Resource};
 
 use crate::VulkanBackend;
@@ -90,15 +90,15 @@ impl VulkanBackend {
         let mut garbage = Vec::with_capacity(swept.len());
         for each in swept {
             garbage.push(match each {
-                Swept::Buffer(id, buffer) => {
+                Unlisted::Buffer(id, buffer) => {
                     resources.insert(id.into());
                     Garbage::Buffer(buffer)
                 }
-                Swept::Texture(id, texture) => {
+                Unlisted::Texture(id, texture) => {
                     resources.insert(id.into());
                     Garbage::Texture(texture)
                 }
-                Swept::Pipeline(id, pipeline) => {
+                Unlisted::Pipeline(id, pipeline) => {
                     pipelines.insert(id);
                     Garbage::Pipeline(pipeline)
                 }

@@ -19,13 +19,13 @@ use crate::{Resources, VulkanBackend};
 
 /// A command buffer of the engine that lists can be recorded into.
 #[derive(Debug)]
-pub struct Commands {
+pub struct EngineCommands {
     buffer: vk::CommandBuffer,
     device: vk::Device,
     family: u32,
 }
 
-impl Commands {
+impl EngineCommands {
     /// Wraps a command buffer. Only `backend` may record into the result.
     ///
     /// # Safety
@@ -46,9 +46,9 @@ impl Commands {
 }
 
 impl Record for VulkanBackend {
-    type Encoder = Commands;
+    type Encoder = EngineCommands;
 
-    fn record(&mut self, encoder: &mut Commands, list: &PassList) -> Result<()> {
+    fn record(&mut self, encoder: &mut EngineCommands, list: &PassList) -> Result<()> {
         if (encoder.device, encoder.family) != (self.gpu.device.handle(), self.gpu.queue_family) {
             return Err(Error::rule("record", "the command buffer is of another device or another family of queues"));
         }

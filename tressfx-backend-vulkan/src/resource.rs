@@ -16,7 +16,7 @@ use crate::uses::EngineUse;
 #[derive(Debug)]
 pub(crate) struct Buffer {
     pub(crate) buffer: vk::Buffer,
-    pub(crate) owner: Owner,
+    pub(crate) owner: Ownership,
 }
 
 /// A texture and its view.
@@ -27,12 +27,12 @@ pub(crate) struct Texture {
     pub(crate) view: vk::ImageView,
     pub(crate) size: [u32; 2],
     pub(crate) format: Format,
-    pub(crate) owner: Owner,
+    pub(crate) owner: Ownership,
 }
 
 /// Whose memory it is.
 #[derive(Debug)]
-pub(crate) enum Owner {
+pub(crate) enum Ownership {
     /// Ours.
     Us(Allocation),
     /// An engine's: found in one use at the beginning of each recording, and left in another at its end.
@@ -46,7 +46,7 @@ pub(crate) enum Owner {
 
 impl Gpu {
     pub(crate) fn destroy_buffer(&self, buffer: Buffer) {
-        if let Owner::Us(memory) = buffer.owner {
+        if let Ownership::Us(memory) = buffer.owner {
             // SAFETY: the caller knows that the GPU has finished with it.
             unsafe { self.device.destroy_buffer(buffer.buffer, None) };
             self.free(memory);
@@ -56,7 +56,7 @@ impl Gpu {
     pub(crate) fn destroy_texture(&self, texture: Texture) {
         // SAFETY: the caller knows that the GPU has finished with it. The view is ours even of an engine's image.
         unsafe { self.device.destroy_image_view(texture.view, None) };
-        if let Owner::Us(memory) = texture.owner {
+        if let Ownership::Us(memory) = texture.owner {
             // SAFETY: as above.
             unsafe { self.device.destroy_image(texture.image, None) };
             self.free(memory);
@@ -88,7 +88,7 @@ impl VulkanBackend {
         left: EngineUse,
     ) -> Result<BufferId> {
         desc.check(self.catalog.caps())?;
-        Ok(self.catalog.import_buffer(desc, Buffer { buffer, owner: Owner::Engine { found, left } }))
+        Ok(self.catalog.import_buffer(desc, Buffer { buffer, owner: Ownership::Engine { found, left } }))
     }
 
     /// Makes an engine's texture known: 2D; its first mip level and layer are used. It stays the engine's.
@@ -107,7 +107,7 @@ impl VulkanBackend {
     ) -> Result<TextureId> {
         desc.check(self.catalog.caps())?;
         let view = self.gpu.view_of(desc, image)?;
-        let owner = Owner::Engine { found, left };
+        let owner = Ownership::Engine { found, left };
         let texture = Texture { image, view, size: desc.size, format: desc.format, owner };
         Ok(self.catalog.import_texture(desc, texture))
     }
@@ -117,7 +117,7 @@ impl VulkanBackend {
         self.gpu.check_lost()?;
         let usage = buffer_usages(desc.uses);
         let (buffer, memory) = self.gpu.buffer(desc.label, desc.bytes, usage, MemoryLocation::GpuOnly)?;
-        let id = self.catalog.add_buffer(desc, Buffer { buffer, owner: Owner::Us(memory) });
+        let id = self.catalog.add_buffer(desc, Buffer { buffer, owner: Ownership::Us(memory) });
         self.tracker.not_zeroed.push(id.into());
         Ok(id)
     }
@@ -135,7 +135,7 @@ impl VulkanBackend {
                 return Err(error);
             }
         };
-        let owner = Owner::Us(memory);
+        let owner = Ownership::Us(memory);
         let id = self.catalog.add_texture(desc, Texture { image, view, size: desc.size, format: desc.format, owner });
         self.tracker.not_zeroed.push(id.into());
         Ok(id)

@@ -7,7 +7,7 @@ use tressfx_core::error::{Label, Result};
 use tressfx_core::pass::PassList;
 
 use crate::device::Gpu;
-use crate::{Commands, VulkanBackend};
+use crate::{EngineCommands, VulkanBackend};
 
 const LABEL: Label = "hair.run";
 
@@ -91,7 +91,7 @@ impl VulkanBackend {
         runner.begin(&self.gpu).map_err(|code| self.gpu.failed(code, LABEL, 0))?;
         let before = self.recorded();
         // SAFETY: it is ours, it is being recorded, and it is submitted or discarded below.
-        let mut commands = unsafe { Commands::new(self, runner.commands) };
+        let mut commands = unsafe { EngineCommands::new(self, runner.commands) };
         self.record(&mut commands, list)?;
         if let Err(code) = runner.submit(&self.gpu) {
             let error = self.gpu.failed(code, LABEL, 0);

@@ -12,7 +12,7 @@ pub(crate) fn buffer_usages(uses: BufferUses) -> vk::BufferUsageFlags {
         (BufferUses::UNIFORM, U::UNIFORM_BUFFER),
         (BufferUses::INDIRECT, U::INDIRECT_BUFFER),
         (BufferUses::COPY_SOURCE, U::TRANSFER_SRC),
-        (BufferUses::COPY_TARGET, U::TRANSFER_DST),
+        (BufferUses::COPY_DESTINATION, U::TRANSFER_DST),
     ]
     .into_iter()
     .filter(|(each, _)| uses.contains(*each))
@@ -46,7 +46,7 @@ pub(crate) fn texture_usages(format: Format, uses: TextureUses) -> vk::ImageUsag
         (TextureUses::SAMPLED, U::SAMPLED),
         (TextureUses::STORAGE, U::STORAGE),
         (TextureUses::COPY_SOURCE, U::TRANSFER_SRC),
-        (TextureUses::COPY_TARGET, U::TRANSFER_DST),
+        (TextureUses::COPY_DESTINATION, U::TRANSFER_DST),
     ]
     .into_iter()
     .filter(|(each, _)| uses.contains(*each))
@@ -140,10 +140,10 @@ fn stages(stages: Stages) -> vk::ShaderStageFlags {
 }
 
 /// Stages and kinds of access that take part in a barrier.
-pub(crate) type Scope = (vk::PipelineStageFlags2, vk::AccessFlags2);
+pub(crate) type StageAccess = (vk::PipelineStageFlags2, vk::AccessFlags2);
 
 /// The scope of a set of accesses to a buffer, or to a texture of a format.
-pub(crate) fn scope(access: Access, format: Option<Format>) -> Scope {
+pub(crate) fn scope(access: Access, format: Option<Format>) -> StageAccess {
     use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
     let shader_read = A::SHADER_STORAGE_READ | A::UNIFORM_READ | A::SHADER_SAMPLED_READ;
     let read = if format.is_some() { A::SHADER_SAMPLED_READ } else { shader_read };

@@ -7,7 +7,7 @@ use tressfx_core::id::Resource;
 use crate::Resources;
 use crate::barrier::Barrier;
 use crate::device::Gpu;
-use crate::resource::Owner;
+use crate::resource::Ownership;
 use crate::tables::scope;
 
 /// The state of all resources, as of the newest recording.
@@ -26,11 +26,11 @@ pub(crate) struct Tracker {
 impl Tracker {
     /// Adds what has to be waited for before `resource` is used so.
     pub(crate) fn wait_for(&mut self, resources: &Resources, resource: Resource, access: Access) {
-        let wait = self.hazards.touch(resource, access);
+        let wait = self.hazards.note_access(resource, access);
         let first = !self.borrowed.contains(&resource);
         match resource {
             Resource::Buffer(id) => match &resources.buffer(id).owner {
-                Owner::Engine { found, .. } if first => {
+                Ownership::Engine { found, .. } if first => {
                     self.borrowed.push(resource);
                     self.barrier.buffer((found.stage, found.access), scope(access, None));
                 }
@@ -41,7 +41,7 @@ impl Tracker {
             Resource::Texture(id) => {
                 let texture = resources.texture(id);
                 match &texture.owner {
-                    Owner::Engine { found, .. } if first => {
+                    Ownership::Engine { found, .. } if first => {
                         self.borrowed.push(resource);
                         self.barrier.acquire(texture, found, access);
                     }
@@ -57,13 +57,13 @@ impl Tracker {
             let before = self.hazards.release(resource);
             match resource {
                 Resource::Buffer(id) => {
-                    if let Owner::Engine { left, .. } = &resources.buffer(id).owner {
+                    if let Ownership::Engine { left, .. } = &resources.buffer(id).owner {
                         self.barrier.buffer(scope(before, None), (left.stage, left.access));
                     }
                 }
                 Resource::Texture(id) => {
                     let texture = resources.texture(id);
-                    if let Owner::Engine { left, .. } = &texture.owner {
+                    if let Ownership::Engine { left, .. } = &texture.owner {
                         self.barrier.release(texture, before, left);
                     }
                 }

@@ -95,7 +95,7 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     let alignments = [limits.min_storage_buffer_offset_alignment, limits.min_uniform_buffer_offset_alignment];
     caps.binding_alignment = alignments.into_iter().max().unwrap_or(1).max(1).into();
     caps.max_buffer_bytes = limits.max_buffer_size;
-    caps.max_texture_edge = limits.max_texture_dimension_2d;
+    caps.max_texture_size = limits.max_texture_dimension_2d;
     // WebGPU counts bytes as well: each format of the contract takes 8 at most.
     caps.max_color_targets = limits.max_color_attachments.min(limits.max_color_attachment_bytes_per_sample / 8);
     caps.max_group_threads = limits.max_compute_invocations_per_workgroup;

@@ -147,8 +147,8 @@ impl Backend for WgpuBackend {
         self.take_read(ticket)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
-        self.reads.give_up(ticket);
+    fn cancel_read(&mut self, ticket: Ticket) {
+        self.reads.cancel_read(ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {

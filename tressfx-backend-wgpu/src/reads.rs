@@ -165,7 +165,7 @@ impl Reads {
         self.free.count() + self.pending.len()
     }
 
-    pub(crate) fn give_up(&mut self, ticket: Ticket) {
+    pub(crate) fn cancel_read(&mut self, ticket: Ticket) {
         self.pending.remove(&ticket);
         self.failed.remove(&ticket);
     }

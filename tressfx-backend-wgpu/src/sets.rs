@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use tressfx_core::backend::Swept;
+use tressfx_core::backend::Unlisted;
 use tressfx_core::error::Result;
 use tressfx_core::id::{PipelineId, Resource};
 use tressfx_core::pass::{Command, PassList};
@@ -45,14 +45,14 @@ impl BindGroups {
     }
 
     /// Forgets the groups of what is gone.
-    pub(crate) fn forget<B, T, P>(&mut self, swept: &[Swept<B, T, P>]) {
+    pub(crate) fn forget<B, T, P>(&mut self, swept: &[Unlisted<B, T, P>]) {
         let mut resources = HashSet::new();
         let mut pipelines = HashSet::new();
         for swept in swept {
             match swept {
-                Swept::Buffer(id, _) => drop(resources.insert(Resource::from(*id))),
-                Swept::Texture(id, _) => drop(resources.insert(Resource::from(*id))),
-                Swept::Pipeline(id, _) => drop(pipelines.insert(*id)),
+                Unlisted::Buffer(id, _) => drop(resources.insert(Resource::from(*id))),
+                Unlisted::Texture(id, _) => drop(resources.insert(Resource::from(*id))),
+                Unlisted::Pipeline(id, _) => drop(pipelines.insert(*id)),
             }
         }
         self.groups.retain(|(pipeline, bindings), _| {

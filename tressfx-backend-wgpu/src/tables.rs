@@ -20,7 +20,7 @@ const BUFFER_USES: [(BufferUses, BufferUsages); 5] = [
     (BufferUses::UNIFORM, BufferUsages::UNIFORM),
     (BufferUses::INDIRECT, BufferUsages::INDIRECT),
     (BufferUses::COPY_SOURCE, BufferUsages::COPY_SRC),
-    (BufferUses::COPY_TARGET, BufferUsages::COPY_DST),
+    (BufferUses::COPY_DESTINATION, BufferUsages::COPY_DST),
 ];
 
 const TEXTURE_USES: [(TextureUses, TextureUsages); 5] = [
@@ -28,7 +28,7 @@ const TEXTURE_USES: [(TextureUses, TextureUsages); 5] = [
     (TextureUses::SAMPLED, TextureUsages::TEXTURE_BINDING),
     (TextureUses::STORAGE, TextureUsages::STORAGE_BINDING),
     (TextureUses::COPY_SOURCE, TextureUsages::COPY_SRC),
-    (TextureUses::COPY_TARGET, TextureUsages::COPY_DST),
+    (TextureUses::COPY_DESTINATION, TextureUsages::COPY_DST),
 ];
 
 const FORMATS: [(Format, TextureFormat); 12] = [

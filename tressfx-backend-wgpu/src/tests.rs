@@ -133,7 +133,7 @@ fn what_was_recorded_and_thrown_away_fails_and_is_used_again() {
         drop(encoder);
         assert_eq!(engine.hair.read(ticket), ReadBack::Failed);
         assert_eq!(engine.hair.read(ticket), ReadBack::Failed, "it stays so until it is given up");
-        engine.hair.give_up(ticket);
+        engine.hair.cancel_read(ticket);
         assert_eq!(engine.hair.read(ticket), ReadBack::Unknown);
         let (list, ticket) = engine.work(&kernel, values, round);
         engine.frame(&list);

@@ -14,7 +14,7 @@ use crate::shader::{Kernel, RasterPipeline};
 
 pub use crate::format::Format;
 pub use caps::Caps;
-pub use catalog::{Catalog, Swept};
+pub use catalog::{Catalog, Unlisted};
 pub use desc::{Blend, BufferDesc, BufferUses, ComputeDesc, Depth, DepthOrder, RasterDesc, TextureDesc, TextureUses};
 pub use owner::Owner;
 
@@ -49,7 +49,7 @@ pub trait Backend {
     fn read(&mut self, ticket: Ticket) -> ReadBack;
 
     /// Cancels a read-back: nobody will ask for its bytes.
-    fn give_up(&mut self, ticket: Ticket);
+    fn cancel_read(&mut self, ticket: Ticket);
 
     /// The times of the compute and raster passes, in their order, of the newest list that has finished and has passes. They
     /// are returned once. Empty if there are no new ones, or if the device cannot measure time.

@@ -50,18 +50,18 @@ impl Known<'_> {
                 if data.start > data.end || data.end > uploaded {
                     return Err(format!("bytes {data:?} of a list that holds {uploaded}"));
                 }
-                if data.start % 4 != 0 {
+                if !data.start.is_multiple_of(4) {
                     return Err(format!("bytes {data:?} do not begin at a multiple of 4"));
                 }
-                self.range(*dst, *offset, data.len() as u64, BufferUses::COPY_TARGET)
+                self.range(*dst, *offset, data.len() as u64, BufferUses::COPY_DESTINATION)
             }
-            Command::Clear { dst, offset, bytes } => self.range(*dst, *offset, *bytes, BufferUses::COPY_TARGET),
+            Command::Clear { dst, offset, bytes } => self.range(*dst, *offset, *bytes, BufferUses::COPY_DESTINATION),
             Command::Copy { src, src_offset, dst, dst_offset, bytes } => {
                 if src == dst {
                     return Err(format!("from {src:?} to itself"));
                 }
                 self.range(*src, *src_offset, *bytes, BufferUses::COPY_SOURCE)?;
-                self.range(*dst, *dst_offset, *bytes, BufferUses::COPY_TARGET)
+                self.range(*dst, *dst_offset, *bytes, BufferUses::COPY_DESTINATION)
             }
             Command::CopyToTexture { src, offset, row_bytes, dst } => self.rows(*src, *offset, *row_bytes, *dst),
             Command::Compute(pass) => self.compute(pass),
@@ -115,7 +115,7 @@ impl Known<'_> {
     /// Rows of a buffer that become a texture.
     fn rows(&self, src: BufferId, offset: u64, row_bytes: u32, dst: TextureId) -> Rule {
         let buffer = self.buffer(src, BufferUses::COPY_SOURCE)?;
-        let texture = self.texture(dst, TextureUses::COPY_TARGET)?;
+        let texture = self.texture(dst, TextureUses::COPY_DESTINATION)?;
         let [width, height] = texture.size.map(u64::from);
         let row = width * u64::from(texture.format.bytes());
         if texture.format.is_depth() {

@@ -131,10 +131,10 @@ pub struct Undo(HashMap<Resource, Option<State>>);
 
 impl Hazards {
     /// What `command` has to wait for: at most one entry for each resource.
-    pub fn before(&mut self, command: &Command) -> Vec<Wait> {
+    pub fn waits_before(&mut self, command: &Command) -> Vec<Wait> {
         let mut waits = Vec::new();
         for (resource, access) in accesses(command) {
-            waits.extend(self.touch(resource, access));
+            waits.extend(self.note_access(resource, access));
         }
         waits
     }
@@ -175,10 +175,10 @@ impl Hazards {
         state.written | state.read
     }
 
-    /// Notes an access, and gives what it has to wait for. [`Hazards::before`] calls it for each access of a command. A
+    /// Notes an access, and gives what it has to wait for. [`Hazards::waits_before`] calls it for each access of a command. A
     /// backend calls it for accesses that are not in a command: zeros for a new resource, and what an engine did to a
     /// resource.
-    pub fn touch(&mut self, resource: Resource, access: Access) -> Option<Wait> {
+    pub fn note_access(&mut self, resource: Resource, access: Access) -> Option<Wait> {
         let state = self.state(resource);
         let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
         // A change of layout is a write, even if the access only reads. That access has waited for it.
@@ -263,7 +263,7 @@ fn merge(found: Vec<(Resource, Access)>) -> Vec<(Resource, Access)> {
 /// The hazards of a whole list, one entry a command: for tests and for printing.
 pub fn of_list(list: &PassList) -> Vec<Vec<Wait>> {
     let mut hazards = Hazards::default();
-    list.commands().iter().map(|command| hazards.before(command)).collect()
+    list.commands().iter().map(|command| hazards.waits_before(command)).collect()
 }
 
 #[cfg(test)]
@@ -284,24 +284,24 @@ mod tests {
     fn written_in_compute_read_in_compute_read_in_graphics_waits_twice() {
         let [a, _] = ids();
         let mut hazards = Hazards::default();
-        assert_eq!(hazards.touch(a, Access::COMPUTE_WRITE), None);
-        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
-        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), None, "seen already");
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), wait(a, Access::COMPUTE_WRITE, Access::RASTER_READ));
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_WRITE), None);
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), None, "seen already");
+        assert_eq!(hazards.note_access(a, Access::RASTER_READ), wait(a, Access::COMPUTE_WRITE, Access::RASTER_READ));
+        assert_eq!(hazards.note_access(a, Access::RASTER_READ), None);
     }
 
     #[test]
     fn a_write_waits_for_the_readers_and_the_last_writer() {
         let [a, b] = ids();
         let mut hazards = Hazards::default();
-        assert_eq!(hazards.touch(a, Access::COPY_WRITE), None);
-        hazards.touch(a, Access::COMPUTE_READ);
-        hazards.touch(a, Access::RASTER_READ);
+        assert_eq!(hazards.note_access(a, Access::COPY_WRITE), None);
+        hazards.note_access(a, Access::COMPUTE_READ);
+        hazards.note_access(a, Access::RASTER_READ);
         let readers = Access::COPY_WRITE | Access::COMPUTE_READ | Access::RASTER_READ;
-        assert_eq!(hazards.touch(a, Access::COPY_WRITE), wait(a, readers, Access::COPY_WRITE));
-        assert_eq!(hazards.touch(a, Access::COPY_WRITE), wait(a, Access::COPY_WRITE, Access::COPY_WRITE));
-        assert_eq!(hazards.touch(b, Access::COMPUTE_READ), None, "other resources are not waited for");
+        assert_eq!(hazards.note_access(a, Access::COPY_WRITE), wait(a, readers, Access::COPY_WRITE));
+        assert_eq!(hazards.note_access(a, Access::COPY_WRITE), wait(a, Access::COPY_WRITE, Access::COPY_WRITE));
+        assert_eq!(hazards.note_access(b, Access::COMPUTE_READ), None, "other resources are not waited for");
     }
 
     #[test]
@@ -309,7 +309,7 @@ mod tests {
         let [a, _] = ids();
         let mut hazards = Hazards::default();
         for access in [Access::COMPUTE_READ, Access::RASTER_READ, Access::COPY_READ, Access::COMPUTE_READ] {
-            assert_eq!(hazards.touch(a, access), None);
+            assert_eq!(hazards.note_access(a, access), None);
         }
     }
 
@@ -318,39 +318,47 @@ mod tests {
         let mut slots = Slots::default();
         let a = Resource::Texture(slots.insert(()).into());
         let mut hazards = Hazards::default();
-        assert_eq!(hazards.touch(a, Access::TARGET), wait(a, Access::NONE, Access::TARGET), "it has no layout yet");
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), wait(a, Access::TARGET, Access::RASTER_READ));
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
-        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::RASTER_READ, Access::COMPUTE_READ));
+        assert_eq!(
+            hazards.note_access(a, Access::TARGET),
+            wait(a, Access::NONE, Access::TARGET),
+            "it has no layout yet"
+        );
+        assert_eq!(hazards.note_access(a, Access::RASTER_READ), wait(a, Access::TARGET, Access::RASTER_READ));
+        assert_eq!(hazards.note_access(a, Access::RASTER_READ), None);
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), wait(a, Access::RASTER_READ, Access::COMPUTE_READ));
         let reads = Access::RASTER_READ | Access::COMPUTE_READ;
-        assert_eq!(hazards.touch(a, Access::COPY_READ), wait(a, reads, Access::COPY_READ), "copied is another layout");
-        assert_eq!(hazards.touch(a, Access::COPY_READ), None);
+        assert_eq!(
+            hazards.note_access(a, Access::COPY_READ),
+            wait(a, reads, Access::COPY_READ),
+            "copied is another layout"
+        );
+        assert_eq!(hazards.note_access(a, Access::COPY_READ), None);
     }
 
     #[test]
     fn what_is_given_back_begins_anew() {
         let [a, _] = ids();
         let mut hazards = Hazards::default();
-        hazards.touch(a, Access::COMPUTE_WRITE);
-        hazards.touch(a, Access::RASTER_READ);
+        hazards.note_access(a, Access::COMPUTE_WRITE);
+        hazards.note_access(a, Access::RASTER_READ);
         assert_eq!(hazards.release(a), Access::COMPUTE_WRITE | Access::RASTER_READ);
         assert_eq!(hazards.release(a), Access::NONE);
-        assert_eq!(hazards.touch(a, Access::RASTER_READ), None);
+        assert_eq!(hazards.note_access(a, Access::RASTER_READ), None);
     }
 
     #[test]
     fn a_recording_that_is_taken_back_leaves_everything_as_it_was() {
         let [a, b] = ids();
         let mut hazards = Hazards::default();
-        hazards.touch(a, Access::COMPUTE_WRITE);
+        hazards.note_access(a, Access::COMPUTE_WRITE);
         let first = hazards.end_recording();
-        hazards.touch(a, Access::COMPUTE_READ);
-        hazards.touch(a, Access::COPY_WRITE);
-        hazards.touch(b, Access::COPY_WRITE);
+        hazards.note_access(a, Access::COMPUTE_READ);
+        hazards.note_access(a, Access::COPY_WRITE);
+        hazards.note_access(b, Access::COPY_WRITE);
         let second = hazards.end_recording();
         hazards.undo(second);
-        assert_eq!(hazards.touch(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
-        assert_eq!(hazards.touch(b, Access::COMPUTE_READ), None);
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
+        assert_eq!(hazards.note_access(b, Access::COMPUTE_READ), None);
         let third = hazards.end_recording();
         hazards.undo(third);
         hazards.undo(first);
@@ -362,9 +370,9 @@ mod tests {
         let [a, _] = ids();
         let mut hazards = Hazards::default();
         let update = Access::COMPUTE_READ | Access::COMPUTE_WRITE;
-        assert_eq!(hazards.touch(a, update), None);
-        assert_eq!(hazards.touch(a, update), wait(a, update, update));
+        assert_eq!(hazards.note_access(a, update), None);
+        assert_eq!(hazards.note_access(a, update), wait(a, update, update));
         hazards.forget(a);
-        assert_eq!(hazards.touch(a, update), None);
+        assert_eq!(hazards.note_access(a, update), None);
     }
 }

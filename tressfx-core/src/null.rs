@@ -4,8 +4,8 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::backend::{
-    Backend, BufferDesc, Caps, Catalog, ComputeDesc, Memory, RasterDesc, ReadBack, Record, Run, Swept, TextureDesc,
-    Timing,
+    Backend, BufferDesc, Caps, Catalog, ComputeDesc, Memory, RasterDesc, ReadBack, Record, Run, TextureDesc, Timing,
+    Unlisted,
 };
 use crate::error::{Label, Result};
 use crate::hazards::Hazards;
@@ -51,9 +51,9 @@ impl NullBackend {
     fn sweep(&mut self) {
         for swept in self.catalog.sweep() {
             match swept {
-                Swept::Buffer(id, ()) => self.hazards.forget(id.into()),
-                Swept::Texture(id, ()) => self.hazards.forget(id.into()),
-                Swept::Pipeline(..) => {}
+                Unlisted::Buffer(id, ()) => self.hazards.forget(id.into()),
+                Unlisted::Texture(id, ()) => self.hazards.forget(id.into()),
+                Unlisted::Pipeline(..) => {}
             }
         }
     }
@@ -99,7 +99,7 @@ impl Backend for NullBackend {
         if self.reads.remove(&ticket) { ReadBack::Failed } else { ReadBack::Unknown }
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
+    fn cancel_read(&mut self, ticket: Ticket) {
         self.reads.remove(&ticket);
     }
 
@@ -119,7 +119,7 @@ impl Record for NullBackend {
         self.sweep();
         self.catalog.check(list)?;
         for command in list.commands() {
-            self.barriers += usize::from(!self.hazards.before(command).is_empty());
+            self.barriers += usize::from(!self.hazards.waits_before(command).is_empty());
             if let Command::ReadBuffer { ticket, .. } | Command::ReadTexture { ticket, .. } = command {
                 self.reads.insert(*ticket);
             }

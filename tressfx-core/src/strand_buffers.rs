@@ -62,7 +62,7 @@ impl StrandShape {
 pub struct StrandBuffers {
     /// The counts.
     pub shape: StrandShape,
-    /// The point of the rest pose that positions are relative to, see [`Bounds::coarse_center`](crate::strands::Bounds::coarse_center).
+    /// The point of the rest pose that positions are relative to, see [`Bounds::rounded_center`](crate::strands::Bounds::rounded_center).
     pub center: Vec3,
     /// `vec4<f32>` a vertex of every strand: position about the centre in the unit of the file, inverse mass.
     pub positions: BufferId,

@@ -14,7 +14,7 @@ use tressfx_core::shader::Module;
 use crate::renderer::Targets;
 use crate::shaders::{GROUP, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::Order;
+use crate::technique::TechniqueInstance;
 use crate::views::BoundView;
 use pool::{NodePool, Resolved};
 
@@ -118,7 +118,7 @@ impl Ppll {
     }
 }
 
-impl Order for Ppll {
+impl TechniqueInstance for Ppll {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
         check(backend, size)?;
         let pool = NodePool::new(backend, size, &self.desc)?;

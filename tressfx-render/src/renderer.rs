@@ -11,7 +11,7 @@ use crate::ppll::Counters;
 use crate::predict;
 use crate::shade::Shade;
 use crate::strands::SectionDraw;
-use crate::technique::{Order, Technique};
+use crate::technique::{Technique, TechniqueInstance};
 use crate::views::{MAX_VIEWS, ViewDraw, Views};
 
 /// The pool is made this many times as large as predicted or measured, since the next frame may need more.
@@ -95,7 +95,7 @@ pub struct HairRenderer {
     desc: RenderDesc,
     views: Views,
     shade: Shade,
-    order: Box<dyn Order>,
+    order: Box<dyn TechniqueInstance>,
     /// Frees everything above.
     owner: Owner,
 }
@@ -142,7 +142,7 @@ impl HairRenderer {
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size; the pool is unchanged then.
-    pub fn reserve(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
+    pub fn grow_to_predicted(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         if view.is_empty() {
             return Ok(());
         }
@@ -151,11 +151,11 @@ impl HairRenderer {
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
-    /// are those that [`HairRenderer::read_counters`] has brought back.
+    /// are those that [`HairRenderer::request_counters`] has brought back.
     ///
     /// # Errors
-    /// As [`HairRenderer::reserve`].
-    pub fn observe(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
+    /// As [`HairRenderer::grow_to_predicted`].
+    pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
         if counters.fragments <= self.capacity() {
             return Ok(());
         }
@@ -214,7 +214,7 @@ impl HairRenderer {
     ///
     /// # Panics
     /// If a frame cannot have so many views.
-    pub fn read_counters(&self, list: &mut PassList, view: usize) -> Ticket {
+    pub fn request_counters(&self, list: &mut PassList, view: usize) -> Ticket {
         let (buffer, offset) = self.order.counters(view);
         list.read_buffer(buffer, offset, Counters::BYTES)
     }

@@ -14,16 +14,16 @@ use crate::uniforms::SectionUniform;
 use crate::visibility;
 
 /// How many segments a prediction samples.
-const SAMPLES: usize = 4096;
+const MAX_SAMPLES: usize = 4096;
 
 /// So many layers of hair make the groom look dense.
-const COVER: f64 = 9.0;
+const DENSE_LAYERS: f64 = 9.0;
 
 /// The smallest fitting radius in metres: that of thick human hair.
-const THINNEST: f64 = 0.000_06;
+const MIN_FITTING_RADIUS: f64 = 0.000_06;
 
 /// The largest fitting radius in metres: thicker strands do not look like hair.
-const THICKEST: f64 = 0.000_4;
+const MAX_FITTING_RADIUS: f64 = 0.000_4;
 
 /// What rendering needs to know of a section beside its buffers.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +52,7 @@ impl StrandInfo {
             let ends = [start, start + 1];
             (ends.map(|end| strands.rest[end].truncate()), ends.map(|end| strands.thickness[end]))
         };
-        let count = segments.min(SAMPLES);
+        let count = segments.min(MAX_SAMPLES);
         let sample = (0..count).map(|i| segment(i * segments / count)).collect();
         let fitting_radius = fitting_radius(strands);
         let visibility = visibility::visibility(strands, fitting_radius / strands.metres_per_unit);
@@ -66,15 +66,15 @@ impl StrandInfo {
     }
 }
 
-/// The radius with which the strands would cover the sides of the groom's bounds [`COVER`] times, clamped to between
-/// [`THINNEST`] and [`THICKEST`].
+/// The radius with which the strands would cover the sides of the groom's bounds [`DENSE_LAYERS`] times, clamped to between
+/// [`MIN_FITTING_RADIUS`] and [`MAX_FITTING_RADIUS`].
 fn fitting_radius(strands: &Strands) -> f32 {
     let extent = (strands.bounds.max - strands.bounds.min) * strands.metres_per_unit;
     let sides = (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / 3.0;
     let length: f64 = strands.rest_lengths.iter().map(|&length| f64::from(length)).sum();
     let length = length * f64::from(strands.metres_per_unit) * f64::from(1 + strands.follows);
-    let radius = COVER * f64::from(sides) / (2.0 * length.max(1e-9));
-    radius.clamp(THINNEST, THICKEST) as f32
+    let radius = DENSE_LAYERS * f64::from(sides) / (2.0 * length.max(1e-9));
+    radius.clamp(MIN_FITTING_RADIUS, MAX_FITTING_RADIUS) as f32
 }
 
 /// The strands of a section with what shading needs, and the colours that it gives them.

@@ -29,7 +29,7 @@ impl Default for Technique {
 /// An instance of a technique: it turns shaded strands into pixels of a view.
 ///
 /// The renderer has uploaded views and sections, and shades the strands for a view before it calls `draw`. It owns what is made.
-pub(crate) trait Order: Debug + Send + Sync {
+pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// Makes the buffers whose size depends on that of the view again.
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()>;
 
@@ -50,7 +50,12 @@ pub(crate) trait Order: Debug + Send + Sync {
 }
 
 impl Technique {
-    pub(crate) fn make(&self, backend: &mut dyn Backend, size: [u32; 2], target: Format) -> Result<Box<dyn Order>> {
+    pub(crate) fn make(
+        &self,
+        backend: &mut dyn Backend,
+        size: [u32; 2],
+        target: Format,
+    ) -> Result<Box<dyn TechniqueInstance>> {
         match self {
             Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
         }

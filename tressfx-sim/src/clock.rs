@@ -11,7 +11,7 @@ use tressfx_core::strands::Bounds;
 use tressfx_core::view::Pose;
 
 use crate::params::ParamError;
-use head_path::{Before, HeadPath};
+use head_path::{EarlierFrame, HeadPath};
 pub use params::ClockParams;
 pub use sub_step::{FramePlan, SubStep};
 
@@ -55,7 +55,7 @@ impl Clock {
         Ok(Self {
             params,
             bounds,
-            center: bounds.coarse_center(),
+            center: bounds.rounded_center(),
             time: 0.0,
             behind: 0.0,
             last_sub_step,
@@ -140,7 +140,7 @@ impl Clock {
                 acceleration,
                 heads: [self.simulated_head, pose],
                 shares: [share - if simulated > 0.0 { length / simulated } else { 0.0 }, share],
-                share_of_rest: (length / (simulated - into_frame + length)).min(1.0),
+                share_of_remaining_frame: (length / (simulated - into_frame + length)).min(1.0),
             });
             self.simulated_head = pose;
             self.last_sub_step = length;
@@ -156,8 +156,8 @@ impl Clock {
 
     /// The path of the head in a frame of which `simulated` seconds are simulated.
     fn path(&self, simulated: f64, last: Pose, head: Pose) -> HeadPath {
-        let before = self.before.map(|before| before.map(|(head, dt)| Before { head, length: dt / simulated }));
-        let alike = |before: &Before| (1.0 / MAX_LENGTH_RATIO..=MAX_LENGTH_RATIO).contains(&before.length);
+        let before = self.before.map(|before| before.map(|(head, dt)| EarlierFrame { head, length: dt / simulated }));
+        let alike = |before: &EarlierFrame| (1.0 / MAX_LENGTH_RATIO..=MAX_LENGTH_RATIO).contains(&before.length);
         HeadPath::new(before.map(|before| before.filter(alike)), last, head)
     }
 

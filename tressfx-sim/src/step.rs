@@ -159,7 +159,7 @@ impl Step {
             vertices: info.shape.vertices,
             follows: info.shape.follows,
             local_iterations: params.local_iterations,
-            root_share: sub.share_of_rest as f32,
+            root_share: sub.share_of_remaining_frame as f32,
             first_capsule: 0,
             end_capsule: 0,
         }

@@ -50,7 +50,7 @@ impl Studio {
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(PpllDesc::default().k(args.k));
         let mut renderer = HairRenderer::new(backend, &desc)?;
-        renderer.reserve(backend, &view, &draws(&sections, run.sim.pose()))?;
+        renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth())?;
         backend.run(&uploads)?;
         let (lights, drawn) = (studio_lights(), RenderStats::default());
@@ -65,7 +65,7 @@ impl Studio {
         scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes)?;
         let view = ViewDraw::new(view, lights, *targets);
         renderer.draw(list, &[view], &draws(&self.sections, pose))?;
-        Ok(self.renderer.read_counters(list, 0))
+        Ok(self.renderer.request_counters(list, 0))
     }
 
     /// Reads the counters of the frame that was just drawn and makes room where there was too little. Says whether the
@@ -79,7 +79,7 @@ impl Studio {
             peak_gpu_bytes: 0,
         };
         let before = self.renderer.capacity();
-        self.renderer.observe(&mut *run.backend, &counters)?;
+        self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
         Ok(self.renderer.capacity() > before)
     }
 

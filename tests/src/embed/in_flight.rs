@@ -172,7 +172,7 @@ pub fn a_read_back_is_given_once_and_can_be_given_up<E: Embed>(engine: &mut E) {
     assert_eq!(engine.backend().read(kept), ReadBack::Unknown);
     frame(engine, |engine, encoder| {
         record(engine, encoder, &list);
-        engine.backend().give_up(dropped);
+        engine.backend().cancel_read(dropped);
     });
     assert_eq!(words(engine, kept), [1, 1]);
     assert_eq!([kept, dropped].map(|ticket| engine.backend().read(ticket)), [ReadBack::Unknown, ReadBack::Unknown]);

@@ -64,7 +64,7 @@ fn buffers(backend: &mut dyn Backend, caps: &Caps, answers: &mut Answers) {
 }
 
 fn textures(backend: &mut dyn Backend, caps: &Caps, answers: &mut Answers) {
-    let edge = caps.max_texture_edge + 1;
+    let edge = caps.max_texture_size + 1;
     for size in [[0, 1], [1, 0], [0, 0], [edge, 1], [1, edge], [u32::MAX, u32::MAX]] {
         let answer = backend.create_texture(&TextureDesc::new("rules.texture", size, Format::Rgba8));
         answers.hold(
@@ -83,7 +83,7 @@ fn textures(backend: &mut dyn Backend, caps: &Caps, answers: &mut Answers) {
         }
     }
     let depth = TextureDesc::new("rules.texture", [4, 4], Format::Depth32F);
-    let answer = backend.create_texture(&depth.with_uses(TextureUses::COPY_TARGET));
+    let answer = backend.create_texture(&depth.with_uses(TextureUses::COPY_DESTINATION));
     answers.hold("depth that is copied to", answer, "depth is not copied to");
 }
 

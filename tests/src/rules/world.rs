@@ -149,7 +149,7 @@ impl World {
         let all = BufferUses::STORAGE | BufferUses::INDIRECT | BufferUses::COPIES;
         let [main, other, marker, gone] = ["buffer", "other", "marker", "gone"].map(|label| buffer(label, all));
         let uniform = buffer("uniform", BufferUses::UNIFORM | BufferUses::COPIES);
-        let copy_target = buffer("copy_target", BufferUses::COPY_TARGET);
+        let copy_target = buffer("copy_target", BufferUses::COPY_DESTINATION);
         let copy_source = buffer("copy_source", BufferUses::COPY_SOURCE);
         let storage = buffer("storage", BufferUses::STORAGE);
         let foreign = (0..32).map(|_| another.create_buffer(&BufferDesc::new("foreign", BYTES, all))).last();

@@ -58,7 +58,7 @@ pub(super) fn the_largest_binding_is_written_to_its_end(t: &mut Subject) {
 }
 
 pub(super) fn the_longest_textures_are_cleared_to_their_ends(t: &mut Subject) {
-    let edge = t.backend.caps().max_texture_edge.min(1 << 16);
+    let edge = t.backend.caps().max_texture_size.min(1 << 16);
     for size in [[edge, 1], [1, edge]] {
         let texture = t.texture(size, Format::Rgba8);
         t.draw(texture, Load::Clear([1.0, 0.0, 0.0, 1.0]), Vec::new());
@@ -88,7 +88,7 @@ pub(super) fn buffers_beyond_the_caps_are_refused(t: &mut Subject) {
 }
 
 pub(super) fn textures_beyond_the_caps_are_refused(t: &mut Subject) {
-    let edge = t.backend.caps().max_texture_edge + 1;
+    let edge = t.backend.caps().max_texture_size + 1;
     for size in [[edge, 1], [1, edge]] {
         let desc = TextureDesc::new("suite.long", size, Format::Rgba8);
         assert_refused(t.backend.create_texture(&desc), Need::TextureEdge(edge));
@@ -357,7 +357,7 @@ pub(super) fn caps_fit_the_library(t: &mut Subject) {
         assert!(caps.max_storage_buffers_per_stage >= 8 && caps.max_storage_binding_bytes >= 128 << 20, "{caps:?}");
     }
     if caps.raster {
-        assert!(caps.max_texture_edge >= 4096, "{caps:?}");
+        assert!(caps.max_texture_size >= 4096, "{caps:?}");
     }
     assert!(!caps.timestamps || caps.compute || caps.raster, "timestamps are of passes");
 }

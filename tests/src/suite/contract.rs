@@ -112,10 +112,10 @@ pub(super) fn what_was_given_up_is_unknown(t: &mut Subject) {
     let values = t.storage(&[5u32, 6]);
     let tickets = [0, 4].map(|offset| t.list.read_buffer(values, offset, 4));
     t.run();
-    t.backend.give_up(tickets[0]);
+    t.backend.cancel_read(tickets[0]);
     assert_eq!(t.backend.read(tickets[0]), ReadBack::Unknown);
     assert_eq!(t.read_words(tickets[1]), [6]);
-    t.backend.give_up(tickets[1]);
+    t.backend.cancel_read(tickets[1]);
     assert_eq!(t.backend.read(tickets[1]), ReadBack::Unknown, "given up too late");
 }
 

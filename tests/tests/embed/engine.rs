@@ -9,7 +9,7 @@ use tressfx_backend_vulkan::gpu_allocator::MemoryLocation;
 use tressfx_backend_vulkan::gpu_allocator::vulkan::{
     Allocation, AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc,
 };
-use tressfx_backend_vulkan::{Enabled, VulkanDesc, alone};
+use tressfx_backend_vulkan::{Enabled, VulkanDesc, lock_loader};
 
 /// A device and everything that the engine made from it. It panics at its end if the validation layer had something to say
 /// that nobody took.
@@ -33,7 +33,7 @@ pub(crate) struct Engine {
 
 impl Engine {
     pub(crate) fn new() -> Result<Self, String> {
-        let _alone = alone();
+        let _alone = lock_loader();
         // SAFETY: the loader is what the system has; it stays as long as the engine.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| error.to_string())?;
         let instance = instance(&entry)?;
@@ -205,7 +205,7 @@ impl Drop for Engine {
             }
             drop(allocator);
             self.device.destroy_command_pool(self.pool, None);
-            let _alone = alone();
+            let _alone = lock_loader();
             // What is left on the device by now is said here.
             self.device.destroy_device(None);
             self.debug.destroy_debug_utils_messenger(self.messenger, None);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use tressfx_backend_vulkan::ash::vk;
-use tressfx_backend_vulkan::{Commands, EngineUse, VulkanBackend};
+use tressfx_backend_vulkan::{EngineCommands, EngineUse, VulkanBackend};
 use tressfx_conformance::embed::{Embed, TEXTURE_SIZE};
 use tressfx_core::backend::{BufferDesc, Format, TextureDesc};
 use tressfx_core::id::{BufferId, TextureId};
@@ -121,18 +121,18 @@ impl Embed for Game {
         self.import(self.textures[&texture])
     }
 
-    fn begin(&mut self) -> Box<Commands> {
+    fn begin(&mut self) -> Box<EngineCommands> {
         self.begun = self.hair.recorded();
         // SAFETY: it is being recorded, and is submitted or discarded before the next is begun.
-        Box::new(unsafe { Commands::new(&self.hair, self.engine.begin()) })
+        Box::new(unsafe { EngineCommands::new(&self.hair, self.engine.begin()) })
     }
 
-    fn clear_word(&mut self, encoder: &mut Commands, buffer: BufferId, word: u64) {
+    fn clear_word(&mut self, encoder: &mut EngineCommands, buffer: BufferId, word: u64) {
         // SAFETY: the command buffer is being recorded, and the buffer lives as long as the engine.
         unsafe { self.engine.device.cmd_fill_buffer(encoder.raw(), self.buffers[&buffer], 4 * word, 4, 0) };
     }
 
-    fn copy_texel(&mut self, encoder: &mut Commands, texture: TextureId, buffer: BufferId) {
+    fn copy_texel(&mut self, encoder: &mut EngineCommands, texture: TextureId, buffer: BufferId) {
         let (image, buffer) = (self.textures[&texture], self.buffers[&buffer]);
         self.turn(encoder.raw(), image, EngineUse::SAMPLED, COPIED);
         // SAFETY: as above, and the texture was just put into the layout.
@@ -143,7 +143,7 @@ impl Embed for Game {
         self.turn(encoder.raw(), image, COPIED, EngineUse::SAMPLED);
     }
 
-    fn submit(&mut self, encoder: Box<Commands>) {
+    fn submit(&mut self, encoder: Box<EngineCommands>) {
         self.engine.submit(encoder.raw());
     }
 
@@ -154,7 +154,7 @@ impl Embed for Game {
         self.engine.assert_silent();
     }
 
-    fn discard(&mut self, encoder: Box<Commands>) {
+    fn discard(&mut self, encoder: Box<EngineCommands>) {
         self.engine.discard(encoder.raw());
         // SAFETY: it was never submitted.
         unsafe { self.hair.discard(self.begun) };

@@ -14,7 +14,7 @@ use tressfx_sim::SimParams;
 /// If there is no adapter and nobody said so: a test must not pass because it did not run.
 pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
     // The Vulkan loader does not let a device be made while another thread names an object.
-    let _alone = tressfx_backend_vulkan::alone();
+    let _alone = tressfx_backend_vulkan::lock_loader();
     match WgpuBackend::headless() {
         Ok(backend) => Some(Box::new(backend)),
         Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {

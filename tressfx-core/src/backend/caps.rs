@@ -32,7 +32,7 @@ pub struct Caps {
     /// Bytes of one buffer.
     pub max_buffer_bytes: u64,
     /// Texels along an edge of a texture.
-    pub max_texture_edge: u32,
+    pub max_texture_size: u32,
     /// Colour targets of a raster pass, of whatever formats.
     pub max_color_targets: u32,
     /// Threads of a compute group.
@@ -61,7 +61,7 @@ impl Caps {
             max_uniform_binding_bytes: 64 << 10,
             binding_alignment: 256,
             max_buffer_bytes: 256 << 20,
-            max_texture_edge: 8192,
+            max_texture_size: 8192,
             // Eight, but of 32 bytes for a pixel, and there are formats that take 8.
             max_color_targets: 4,
             max_group_threads: 256,
@@ -86,7 +86,7 @@ impl Caps {
             Need::StorageBindingBytes(bytes) => (bytes, self.max_storage_binding_bytes.min(self.max_buffer_bytes)),
             Need::UniformBindingBytes(bytes) => (bytes, self.max_uniform_binding_bytes.min(self.max_buffer_bytes)),
             Need::BufferBytes(bytes) => (bytes, self.max_buffer_bytes),
-            Need::TextureEdge(texels) => (texels.into(), self.max_texture_edge.into()),
+            Need::TextureEdge(texels) => (texels.into(), self.max_texture_size.into()),
             Need::ColorTargets(count) => (count.into(), self.max_color_targets.into()),
             Need::GroupThreads(threads) => (threads.into(), self.max_group_threads.into()),
             Need::GroupSize { axis, threads } => {

@@ -37,12 +37,12 @@ pub struct Catalog<B, T, P> {
 
 /// A destroyed resource that no list can name any more. The backend frees it once no recorded frame can use it.
 #[derive(Debug)]
-pub enum Swept<B, T, P> {
+pub enum Unlisted<B, T, P> {
     /// A buffer: its id, and the backend's object.
     Buffer(BufferId, B),
-    /// A texture, as [`Swept::Buffer`].
+    /// A texture, as [`Unlisted::Buffer`].
     Texture(TextureId, T),
-    /// A pipeline, as [`Swept::Buffer`].
+    /// A pipeline, as [`Unlisted::Buffer`].
     Pipeline(PipelineId, P),
 }
 
@@ -115,11 +115,12 @@ impl<B, T, P> Catalog<B, T, P> {
     }
 
     /// Takes out the destroyed resources that no list can name any more.
-    pub fn sweep(&mut self) -> Vec<Swept<B, T, P>> {
-        let buffers = self.buffers.sweep().into_iter().map(|(slot, entry)| Swept::Buffer(slot.into(), entry.value));
-        let textures = self.textures.sweep().into_iter().map(|(slot, entry)| Swept::Texture(slot.into(), entry.value));
+    pub fn sweep(&mut self) -> Vec<Unlisted<B, T, P>> {
+        let buffers = self.buffers.sweep().into_iter().map(|(slot, entry)| Unlisted::Buffer(slot.into(), entry.value));
+        let textures =
+            self.textures.sweep().into_iter().map(|(slot, entry)| Unlisted::Texture(slot.into(), entry.value));
         let pipelines =
-            self.pipelines.sweep().into_iter().map(|(slot, entry)| Swept::Pipeline(slot.into(), entry.value));
+            self.pipelines.sweep().into_iter().map(|(slot, entry)| Unlisted::Pipeline(slot.into(), entry.value));
         buffers.chain(textures).chain(pipelines).collect()
     }
 

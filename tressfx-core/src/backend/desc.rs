@@ -43,7 +43,7 @@ uses! {
         /// Copied and read back from.
         COPY_SOURCE = 1 << 3,
         /// Uploaded, cleared and copied to.
-        COPY_TARGET = 1 << 4,
+        COPY_DESTINATION = 1 << 4,
     }
 }
 
@@ -64,7 +64,7 @@ uses! {
         /// Copied and read back from.
         COPY_SOURCE = 1 << 3,
         /// Copied to.
-        COPY_TARGET = 1 << 4,
+        COPY_DESTINATION = 1 << 4,
     }
 }
 
@@ -124,7 +124,7 @@ impl TextureDesc {
             uses = uses | TextureUses::TARGET;
         }
         if !format.is_depth() {
-            uses = uses | TextureUses::COPY_TARGET;
+            uses = uses | TextureUses::COPY_DESTINATION;
         }
         Self { label, size, format, uses }
     }

@@ -120,8 +120,8 @@ impl Backend for Watched<'_> {
         self.backend.read(ticket)
     }
 
-    fn give_up(&mut self, ticket: Ticket) {
-        self.backend.give_up(ticket);
+    fn cancel_read(&mut self, ticket: Ticket) {
+        self.backend.cancel_read(ticket);
     }
 
     fn timings(&mut self) -> Vec<Timing> {

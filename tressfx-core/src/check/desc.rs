@@ -42,7 +42,7 @@ impl TextureDesc {
         if self.uses.contains(TextureUses::STORAGE) && !self.format.is_storage() {
             return Err(Error::rule(self.label, format!("no compute pass writes {:?}", self.format)));
         }
-        if self.uses.contains(TextureUses::COPY_TARGET) && self.format.is_depth() {
+        if self.uses.contains(TextureUses::COPY_DESTINATION) && self.format.is_depth() {
             return Err(Error::rule(self.label, "depth is not copied to"));
         }
         if self.uses.contains(TextureUses::TARGET) {

@@ -14,7 +14,7 @@ const STEPS: f32 = 64.0;
 
 impl Bounds {
     /// The point that the positions of a groom with these bounds are relative to: the centre, rounded to a coarse grid.
-    pub fn coarse_center(&self) -> Vec3 {
+    pub fn rounded_center(&self) -> Vec3 {
         let step = (self.radius() / STEPS).log2().floor().exp2();
         let center = self.center();
         if step.is_normal() { (center / step).round() * step } else { center }
@@ -37,7 +37,7 @@ mod tests {
             Vec4::new(1.6 + 0.1 * (1.3 * x).sin(), 0.12 * (0.7 * x).cos(), -0.07 + 0.09 * (2.1 * x).sin(), 1.0)
         };
         let points: Vec<Vec4> = (0..1000).map(point).collect();
-        let center = Bounds::of(points.iter().map(|point| point.truncate())).coarse_center();
+        let center = Bounds::of(points.iter().map(|point| point.truncate())).rounded_center();
         for (point, relative) in points.iter().zip(relative_to(center, &points)) {
             let lost = relative.as_dvec4() - (point.as_dvec4() - center.extend(0.0).as_dvec4());
             assert_eq!((lost.x, lost.w), (0.0, 0.0), "{point}");
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn a_groom_without_an_extent_has_a_centre() {
         let point = Vec3::new(1.0, 2.0, 3.0);
-        assert_eq!(Bounds { min: point, max: point }.coarse_center(), point);
-        assert!(Bounds::default().coarse_center().is_finite());
+        assert_eq!(Bounds { min: point, max: point }.rounded_center(), point);
+        assert!(Bounds::default().rounded_center().is_finite());
     }
 }

@@ -34,14 +34,14 @@ const END: f64 = 1.0 - 1e-6;
 
 /// The pose at the start of an earlier frame, and the length of that frame divided by the length of this one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Before {
+pub(crate) struct EarlierFrame {
     pub(crate) head: Pose,
     pub(crate) length: f64,
 }
 
 impl HeadPath {
     /// The path from `from` to `to`. `before` are the last frame and the one before it.
-    pub(crate) fn new(before: [Option<Before>; 2], from: Pose, to: Pose) -> Self {
+    pub(crate) fn new(before: [Option<EarlierFrame>; 2], from: Pose, to: Pose) -> Self {
         let cubic = |of: &dyn Fn(&Pose) -> DVec3| {
             Cubic::new(before.map(|before| before.map(|before| (of(&before.head), before.length))), of(&to))
         };
@@ -118,8 +118,8 @@ mod tests {
         let truth = |t: f64| pose(0.3 * t + 0.1 * t * t, 0.2 * t - 0.3 * t * t);
         for length in [0.5, 1.0, 2.0] {
             for more in [None, Some(0.5), Some(1.0), Some(2.0)] {
-                let before = Before { head: truth(-length), length };
-                let earlier = more.map(|more| Before { head: truth(-length - more), length: more });
+                let before = EarlierFrame { head: truth(-length), length };
+                let earlier = more.map(|more| EarlierFrame { head: truth(-length - more), length: more });
                 let path = HeadPath::new([Some(before), earlier], truth(0.0), truth(1.0));
                 let (angle, distance) = errors(&path, truth);
                 assert!(angle < 2e-3 && distance < 1e-6, "{angle} {distance}");
@@ -133,7 +133,7 @@ mod tests {
         let truth = |t: f64| pose(0.0, (0.2 * std::f64::consts::PI * t).sin());
         let largest = |known: usize| {
             let frame = |start: f64| {
-                let at = |frame: usize| Before { head: truth(start - frame as f64), length: 1.0 };
+                let at = |frame: usize| EarlierFrame { head: truth(start - frame as f64), length: 1.0 };
                 let before = [1, 2].map(|frame| Some(at(frame)).filter(|_| frame <= known));
                 let path = HeadPath::new(before, truth(start), truth(start + 1.0));
                 errors(&path, |t| truth(start + t)).1
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn rest_is_rest_and_a_stop_or_a_start_goes_little_astray() {
-        let before = |shifts: [f64; 2]| shifts.map(|shift| Some(Before { head: pose(0.0, shift), length: 1.0 }));
+        let before = |shifts: [f64; 2]| shifts.map(|shift| Some(EarlierFrame { head: pose(0.0, shift), length: 1.0 }));
         let rest = HeadPath::new(before([-1.0, -2.0]), pose(0.0, 0.0), pose(0.0, 0.0));
         assert_eq!(rest.at(0.3), pose(0.0, 0.0));
         let almost = pose(0.0, 1e-6);

@@ -26,7 +26,7 @@ pub struct SubStep {
     /// frame: its first share is then less than 0.
     pub shares: [f64; 2],
     /// Its length divided by the time from its beginning to the end of the frame.
-    pub share_of_rest: f64,
+    pub share_of_remaining_frame: f64,
 }
 
 impl SubStep {
@@ -43,7 +43,7 @@ impl SubStep {
             acceleration: 0.0,
             heads: [head; 2],
             shares: [0.0, 1.0],
-            share_of_rest: 1.0,
+            share_of_remaining_frame: 1.0,
         }
     }
 
@@ -56,7 +56,7 @@ impl SubStep {
 /// The sub-steps of one frame, and what happens before them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePlan {
-    /// Before the sub-steps the strands are reset to the rest pose, on a head with this rotation.
+    /// EarlierFrame the sub-steps the strands are reset to the rest pose, on a head with this rotation.
     pub reset: Option<Quat>,
     /// Whether that is because of a teleport.
     pub teleported: bool,
