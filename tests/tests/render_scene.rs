@@ -60,7 +60,7 @@ fn depth_is_tested_as_in_f64() {
             hair.iter().zip(&empty).map(|(hair, below)| *hair + *below * (1.0 - hair.w)).collect();
         let difference = picture.difference(&expected);
         eprintln!("{order:?}: {difference:?}");
-        assert!(difference.psnr > 60.0, "{order:?}: {difference:?}");
+        assert!(difference.psnr > 80.0, "{order:?}: {difference:?}");
     }
 }
 
@@ -93,7 +93,7 @@ fn a_strand_that_passes_behind_the_eye_is_cut_at_the_near_plane() {
     eprintln!("through the near plane: {difference:?}, {:?}", picture.counters);
     assert!(picture.counters.fragments > 1000);
     // The projected lines are tens of thousands of pixels long: f32 ends are off by a hundredth of a pixel there.
-    assert!(difference.psnr > 50.0, "{difference:?}");
+    assert!(difference.psnr > 85.0, "{difference:?}");
     let behind: Vec<_> = strands.iter().map(|s| s.iter().map(|&p| p + 10.0 * Vec3::Z).collect()).collect();
     assert_eq!(
         screen.hair(&[&Groom::new(&behind, material())]).counters.fragments,

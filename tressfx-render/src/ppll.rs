@@ -170,11 +170,12 @@ fn groups(draw: &SectionDraw) -> u64 {
 /// Whether a device can draw hair on a screen of this size.
 fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
     let pixels = u64::from(size[0]) * u64::from(size[1]);
+    let needs =
+        [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(8 * pixels)];
+    backend.caps().check("hair.render", &needs)?;
     if pixels > MAX_PIXELS {
         let message = format!("a picture of {} x {} pixels, it may have {MAX_PIXELS}", size[0], size[1]);
         return Err(Error::Backend { label: "hair.render", message });
     }
-    let needs =
-        [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(8 * pixels)];
-    backend.caps().check("hair.render", &needs)
+    Ok(())
 }
