@@ -104,8 +104,8 @@ fn check_text(folder: &Path, entry: &Value, language: &str) {
 /// The labels of all kernels there are: each is a WGSL file beside those that are imported.
 fn labels_of_kernels() -> BTreeSet<String> {
     let mut labels = BTreeSet::new();
-    for group in ["sim", "render"] {
-        let folder = format!("{}/../tressfx-{group}/shaders", env!("CARGO_MANIFEST_DIR"));
+    for (group, folder) in [("sim", "shaders"), ("render", "shaders"), ("render", "shaders/ppll")] {
+        let folder = format!("{}/../tressfx-{group}/{folder}", env!("CARGO_MANIFEST_DIR"));
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
             let wgsl = fs::read_to_string(&path).unwrap();
             if wgsl.contains("@compute") || wgsl.contains("@fragment") {

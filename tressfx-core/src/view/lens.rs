@@ -274,7 +274,11 @@ mod tests {
         assert_eq!(refused(view, slanted.transpose(), standard), ViewError::Depth);
         let mut behind = projection;
         behind.w_axis.z = -behind.w_axis.z;
-        assert!(matches!(refused(view, behind, standard), ViewError::Near(_)));
+        assert_eq!(refused(view, behind, standard), ViewError::Order(standard), "near and far are exchanged");
+        // Depth that falls with the distance from -1: no distance has the depth of the near plane.
+        let mut nowhere = projection;
+        nowhere.z_axis.z = 1.0;
+        assert!(matches!(refused(view, nowhere, standard), ViewError::Near(_)));
         let minimised = View::new(view * f32::NAN, projection * f32::NAN, standard, [0, 200]).unwrap();
         assert!(minimised.is_empty());
     }
