@@ -122,8 +122,7 @@ impl Stress {
         // SAFETY: it is being recorded, and is submitted or discarded below.
         let mut commands = unsafe { EngineCommands::new(&self.backend, raw) };
         lists.iter().try_for_each(|list| self.backend.record(&mut commands, list))?;
-        drop(commands);
-        if frame % 17 == 0 && !must_run {
+        if frame.is_multiple_of(17) && !must_run {
             self.frames.discard(&self.gpu, frame)?;
             // SAFETY: it is not submitted.
             unsafe { self.backend.discard(before) };
