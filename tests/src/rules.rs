@@ -1,7 +1,7 @@
 //! Lists and descriptions that break the rules of the contract: for each kind of command a sound one, and one mistake a rule.
 //!
 //! Each is answered with an error that names command and mistake, and does nothing. What is not refused must run, without a
-//! word from a validation layer: [`random`] makes lists of which nobody knows beforehand.
+//! word from a validation layer: `random` makes lists of which nobody knows beforehand.
 
 mod copies;
 mod descriptions;

@@ -144,7 +144,7 @@ impl Shader {
     /// OpenGL's uniform `naga_vs_first_instance` stays 0.
     ///
     /// # Errors
-    /// [`Error::Shader`] if there is no such entry point, or with what naga says.
+    /// [`Error::Shader`](crate::Error::Shader) if there is no such entry point, or with what naga says.
     pub fn emit(&self, stage: ShaderStage, language: Language) -> Result<Emitted> {
         let mut emitted = match language {
             Language::Wgsl => self.emitted(stage, self.wgsl.as_bytes())?,

@@ -29,7 +29,7 @@ impl Shader {
     /// are not bounded; the library's kernels need neither.
     ///
     /// # Errors
-    /// [`Error::Shader`] if there is no such entry point, or with what naga says.
+    /// [`Error::Shader`](crate::Error::Shader) if there is no such entry point, or with what naga says.
     pub fn spirv(&self, stage: ShaderStage, options: &SpirvOptions) -> Result<Vec<u32>> {
         let mut flags = spv::WriterFlags::LABEL_VARYINGS;
         flags.set(spv::WriterFlags::DEBUG, options.names);
