@@ -1,6 +1,6 @@
 //! The kernels in f64 on the CPU, one strand at a time. Tests compare the results of the GPU with these.
 //!
-//! Every function does what the kernel of the same name does, with the same [`Step`](crate::step::Step). Arrays are
+//! Every function does what the kernel of the same name does, with the same [`Step`]. Arrays are
 //! strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
 mod collide;

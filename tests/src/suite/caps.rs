@@ -147,7 +147,10 @@ pub(super) fn groups_are_as_large_as_claimed(t: &mut Subject) {
         // The last word is written by the threads whose numbers are multiples of `words`; with more than one of them, by any.
         let found = t.words(output, 2);
         assert_eq!(found[0], 3 * threads, "{size:?}, {words} words");
-        assert!(found[1] >= 7 && (found[1] - 7).is_multiple_of(words) && found[1] - 7 < threads, "{size:?}, {words} words");
+        assert!(
+            found[1] >= 7 && (found[1] - 7).is_multiple_of(words) && found[1] - 7 < threads,
+            "{size:?}, {words} words"
+        );
     }
 }
 

@@ -8,7 +8,7 @@ use tressfx_core::view::Pose;
 pub struct SubStep {
     /// Its length, s.
     pub length: f64,
-    /// Its length divided by that of the sub-step before. It is 1 except after a change of [`ClockParams`].
+    /// Its length divided by that of the sub-step before. It is 1 except after a change of [`ClockParams`](crate::ClockParams).
     pub length_ratio: f64,
     /// Simulated time at its end, s.
     pub time: f64,
