@@ -125,7 +125,8 @@ fn figures_have_their_keys_and_sensible_values() {
     assert_eq!((&stats["groom"]["strands"], &stats["groom"]["vertices"]), (&60.into(), &720.into()));
     assert_eq!((&stats["frames"], &stats["backend"]), (&8.into(), &"wgpu".into()));
     assert_eq!((&stats["sim"]["non_finite"], &stats["sim"]["resets"]), (&0.into(), &0.into()));
-    assert!(stats["sim"]["rms_edge_error"].as_f64().unwrap() < 0.02);
+    // Measured: 1.8e-7; rounding of positions, whatever the driver.
+    assert!(stats["sim"]["rms_edge_error"].as_f64().unwrap() < 2e-6);
     assert!(stats["sim"]["max_edge_error"].is_number());
     assert_eq!(stats["render"]["dropped"], 0);
     for key in ["fragments", "pixels_with_hair", "peak_gpu_bytes"] {
