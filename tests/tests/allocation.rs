@@ -7,7 +7,7 @@ use tressfx_core::glam::Vec3;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_render::{HairRenderer, RenderDesc, ShadedStrands, StrandInfo};
+use tressfx_render::{Counters, HairRenderer, RenderDesc, ShadedStrands, StrandInfo};
 use tressfx_sim::{HairSim, SectionDesc, SimParams};
 
 fn backend() -> Failing<NullBackend> {
@@ -51,6 +51,11 @@ fn a_renderer_its_size_and_its_sections() {
     let ((), failures) = backend.fail_everywhere(|backend| renderer.resize(backend, [96, 64]));
     assert!(failures > 1, "{failures} creations");
     assert!(backend.living().0 == before.0 && backend.living().1 > before.1, "as many, and larger");
+    let (before, capacity) = (backend.living(), renderer.capacity());
+    let many = Counters { fragments: 8 * capacity, ..Counters::default() };
+    let ((), failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &many));
+    assert_eq!(failures, 1, "the new nodes; the old ones stay where they cannot be made");
+    assert!(renderer.capacity() > capacity && backend.living().0 == before.0);
     let strands = random_strands(8, 8, 1, 1);
     let info = StrandInfo::new(&strands);
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();

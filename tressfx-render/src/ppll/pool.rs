@@ -110,14 +110,12 @@ impl NodePool {
         if capacity <= self.capacity {
             return Ok(());
         }
-        // The old nodes go first: both together may be more than the caller allows.
-        backend.destroy(self.nodes.into());
-        let made = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES);
-        match made {
-            Ok(nodes) => (self.nodes, self.capacity) = (nodes, capacity),
-            Err(_) => self.nodes = storage(backend, "hair.render.nodes", u64::from(self.capacity) * NODE_BYTES)?,
-        }
-        made.map(drop)
+        // The new nodes come first: if they cannot be made, the pool is as it was. To destroy the old ones before would free
+        // nothing yet, since older lists may still name them.
+        let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
+        backend.destroy(std::mem::replace(&mut self.nodes, nodes).into());
+        self.capacity = capacity;
+        Ok(())
     }
 
     /// Sets the counters of views to zero, and says what the limits are when so many groups ask for room.
