@@ -163,11 +163,6 @@ impl<T> Slots<T> {
         }
         Some((slot, value))
     }
-
-    /// All values, in no particular order.
-    pub fn values(&self) -> impl Iterator<Item = &T> {
-        self.places.iter().filter_map(|place| place.value.as_ref())
-    }
 }
 
 #[cfg(test)]

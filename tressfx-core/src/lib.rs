@@ -21,6 +21,7 @@ pub mod shader;
 pub mod shape;
 pub mod strand_buffers;
 pub mod strands;
+pub mod uniform_array;
 pub mod view;
 
 pub use error::{Error, Result};

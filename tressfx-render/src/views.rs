@@ -1,10 +1,10 @@
 //! The views of a frame on the GPU.
 
-use tressfx_core::backend::{Backend, BufferDesc};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
-use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
+use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::View;
 
 use crate::lights::Lights;
@@ -44,36 +44,22 @@ pub(crate) struct BoundView {
     pub(crate) size: [u32; 2],
 }
 
-/// [`ViewUniform`] of each view, in one buffer: they are uploaded together, and each pass binds its own.
+/// [`ViewUniform`] of each view.
 #[derive(Debug)]
-pub(crate) struct Views {
-    uniforms: BufferId,
-    /// From view to view, in bytes.
-    stride: u64,
-}
+pub(crate) struct Views(UniformArray<ViewUniform>);
 
 impl Views {
-    const BYTES: u64 = size_of::<ViewUniform>() as u64;
-
     pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
-        let stride = Self::BYTES.next_multiple_of(backend.caps().binding_alignment);
-        let desc = BufferDesc::uniform("hair.render.views", stride * MAX_VIEWS as u64);
-        Ok(Self { uniforms: backend.create_buffer(&desc)?, stride })
+        UniformArray::new(backend, "hair.render.views", MAX_VIEWS).map(Self)
     }
 
     /// Uploads the views of a frame.
     pub(crate) fn upload(&self, list: &mut PassList, views: &[ViewDraw]) {
-        let stride = self.stride as usize;
-        let mut bytes = vec![0u8; stride * views.len()];
-        for (place, draw) in bytes.chunks_exact_mut(stride).zip(views) {
-            let uniform = ViewUniform::new(draw.view, draw.lights);
-            place[..size_of::<ViewUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
-        }
-        list.upload(self.uniforms, 0, &bytes);
+        let uniforms: Vec<_> = views.iter().map(|draw| ViewUniform::new(draw.view, draw.lights)).collect();
+        self.0.upload(list, 0, &uniforms);
     }
 
     pub(crate) fn bound(&self, index: usize, view: &View) -> BoundView {
-        let uniform = self.uniforms.range(index as u64 * self.stride, Self::BYTES);
-        BoundView { index, uniform, size: view.size() }
+        BoundView { index, uniform: self.0.binding(index), size: view.size() }
     }
 }

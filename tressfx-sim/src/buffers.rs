@@ -7,9 +7,9 @@ use tressfx_core::error::Label;
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
-use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{Strands, relative_to};
+use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::Pose;
 
 use crate::collider::{GpuCapsule, GpuCapsuleMotion};
@@ -32,7 +32,7 @@ pub(crate) struct SectionBuffers {
     /// Only where roots have transforms of their own.
     pub(crate) roots: Option<RootBuffers>,
     /// What changes from sub-step to sub-step.
-    pub(crate) steps: StepBuffer,
+    pub(crate) steps: UniformArray<Step>,
     /// Whether the tip of any guide is pinned.
     pub(crate) pinned_tips: bool,
 }
@@ -97,7 +97,7 @@ impl SectionBuffers {
                 _ => Some(storage(backend, "hair.follow_offsets", 16, follows)?),
             },
             roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
-            steps: StepBuffer::new(backend)?,
+            steps: UniformArray::new(backend, "hair.steps", STEPS)?,
             pinned_tips: strands.rest.chunks(vertices).any(|strand| strand[vertices - 1].w == 0.0),
         })
     }
@@ -116,42 +116,12 @@ impl SectionBuffers {
     }
 }
 
-/// Places for the [`Step`]s of a frame, which are uploaded together. A pass binds one of them.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StepBuffer {
-    buffer: BufferId,
-    /// From place to place, in bytes.
-    stride: u64,
-}
-
-impl StepBuffer {
-    /// The place of a step that stands alone, such as a reset.
-    pub(crate) const ALONE: usize = 0;
-    /// The place of the first sub-step of a frame.
-    pub(crate) const FIRST: usize = 1;
-    const PLACES: usize = Self::FIRST + CapsuleBuffers::SUB_STEPS;
-
-    fn new(backend: &mut dyn Backend) -> Result<Self> {
-        let stride = (size_of::<Step>() as u64).next_multiple_of(backend.caps().binding_alignment);
-        let buffer = backend.create_buffer(&BufferDesc::uniform("hair.steps", stride * Self::PLACES as u64))?;
-        Ok(Self { buffer, stride })
-    }
-
-    /// What a pass binds for each place.
-    pub(crate) fn places(self) -> impl Iterator<Item = Binding> {
-        (0..Self::PLACES as u64).map(move |place| self.buffer.range(place * self.stride, size_of::<Step>() as u64))
-    }
-
-    /// Uploads steps to places from `first` on.
-    pub(crate) fn upload(self, list: &mut PassList, first: usize, steps: &[Step]) {
-        let stride = self.stride as usize;
-        let mut bytes = vec![0u8; stride * steps.len()];
-        for (place, step) in bytes.chunks_exact_mut(stride).zip(steps) {
-            place[..size_of::<Step>()].copy_from_slice(bytemuck::bytes_of(step));
-        }
-        list.upload(self.buffer, self.stride * first as u64, &bytes);
-    }
-}
+/// The [`Step`] that stands alone, such as that of a reset, in [`SectionBuffers::steps`].
+pub(crate) const ALONE: usize = 0;
+/// The step of the first sub-step of a frame.
+pub(crate) const FIRST: usize = 1;
+/// All of them.
+pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
 
 impl RootBuffers {
     fn new(backend: &mut dyn Backend, guides: u32) -> Result<Self> {

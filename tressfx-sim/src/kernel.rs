@@ -21,7 +21,7 @@ use tressfx_core::backend::{Backend, ComputeDesc};
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::{Binding, Bindings, Kernel, Module, Shader, ShaderSource, Specialization};
 
-use crate::buffers::SectionBuffers;
+use crate::buffers::{STEPS, SectionBuffers};
 use crate::section::Shared;
 
 /// Threads of a group; `package::grid::GROUP` in WGSL.
@@ -39,20 +39,20 @@ pub(crate) const LIBRARY: &[Module] = &[
 #[derive(Debug)]
 pub(crate) struct Pass {
     kernel: Kernel,
-    /// For each place of [`StepBuffer`](crate::buffers::StepBuffer).
+    /// For each of the section's steps.
     bindings: Vec<Bindings>,
     grid: Grid,
 }
 
 impl Pass {
-    /// Runs the kernel with the step in a place.
-    pub(crate) fn record(&self, list: &mut PassList, place: usize) {
-        list.compute(&self.kernel, &self.bindings[place], self.grid);
+    /// Runs the kernel with one of the section's steps.
+    pub(crate) fn record(&self, list: &mut PassList, step: usize) {
+        list.compute(&self.kernel, &self.bindings[step], self.grid);
     }
 }
 
 /// The compiled kernels of a simulation. Sections with the same features share them.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Kernels(Vec<Kernel>);
 
 impl Kernels {
@@ -72,15 +72,6 @@ impl Kernels {
         let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
         self.0.push(kernel.clone());
         Ok(kernel)
-    }
-
-    pub(crate) fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Forgets all but the first ones: the others are gone.
-    pub(crate) fn forget_from(&mut self, first: usize) {
-        self.0.truncate(first);
     }
 }
 
@@ -102,8 +93,9 @@ impl PassMaker<'_> {
         grid: Grid,
     ) -> Result<Pass> {
         let kernel = self.kernels.get(self.backend, source, specialization)?;
-        let at = |step| kernel.bind(&[&[("step", step)], resources].concat());
-        let bindings = self.buffers.steps.places().map(at).collect::<Result<_>>()?;
+        let steps = &self.buffers.steps;
+        let with = |step| kernel.bind(&[&[("step", steps.binding(step))], resources].concat());
+        let bindings = (0..STEPS).map(with).collect::<Result<_>>()?;
         Ok(Pass { kernel, bindings, grid })
     }
 

@@ -98,8 +98,8 @@ impl SimSection {
         self.solver.needs(stage, &self.params, self.info.shape.vertices, conditions)
     }
 
-    /// Records a stage with the step in a place of [`StepBuffer`](crate::buffers::StepBuffer).
-    pub(crate) fn record(&self, list: &mut PassList, stage: Stage, place: usize) {
+    /// Records a stage with one of [`SectionBuffers::steps`].
+    pub(crate) fn record(&self, list: &mut PassList, stage: Stage, step: usize) {
         let passes = &self.passes;
         let pass = match stage {
             Stage::Roots => passes.roots.as_ref(),
@@ -113,7 +113,7 @@ impl SimSection {
             Stage::Follow => passes.follow.as_ref(),
             Stage::Tangents => Some(&passes.tangents),
         };
-        pass.iter().for_each(|pass| pass.record(list, place));
+        pass.iter().for_each(|pass| pass.record(list, step));
     }
 }
 

@@ -9,7 +9,7 @@ use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::{Bounds, Strands};
 use tressfx_core::view::Pose;
 
-use crate::buffers::{CapsuleBuffers, RootTransform, StepBuffer, storage};
+use crate::buffers::{ALONE, CapsuleBuffers, FIRST, RootTransform, storage};
 use crate::clock::{Clock, ClockParams, SubStep};
 use crate::collider::{CapsuleList, CapsuleMotion};
 use crate::error::SimError;
@@ -148,7 +148,7 @@ impl HairSim {
         };
         if report.reset || report.sub_steps > 0 {
             let last = plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS).last();
-            let place = last.map_or(StepBuffer::ALONE, |last| StepBuffer::FIRST + last.len() - 1);
+            let place = last.map_or(ALONE, |last| FIRST + last.len() - 1);
             for stage in Solver::FRAME_END {
                 self.sections.iter().for_each(|section| section.record(list, stage, place));
             }
@@ -250,12 +250,11 @@ impl HairSim {
     pub fn set_params(&mut self, backend: &mut dyn Backend, section: usize, params: SimParams) -> Result<(), SimError> {
         params.validate()?;
         let Self { sections, kernels, shared, owner, .. } = self;
-        let known = kernels.count();
-        let changed = owner.change(backend, |backend| sections[section].set_params(backend, kernels, params, shared));
-        if changed.is_err() {
-            kernels.forget_from(known);
-        }
-        Ok(changed?)
+        // Kernels that were compiled before something failed are gone.
+        let mut compiled = kernels.clone();
+        owner.change(backend, |backend| sections[section].set_params(backend, &mut compiled, params, shared))?;
+        *kernels = compiled;
+        Ok(())
     }
 
     /// Brings the positions of all strands back, a ticket each section: `vec4<f32>`, vertex-major over all strands; position
@@ -288,7 +287,7 @@ impl HairSim {
     /// # Panics
     /// If there is no such section.
     pub fn record_step(&self, list: &mut PassList, section: usize, step: &Step) {
-        self.sections[section].buffers.steps.upload(list, StepBuffer::ALONE, &[*step]);
+        self.sections[section].buffers.steps.upload(list, ALONE, &[*step]);
     }
 
     /// Records capsules for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
@@ -308,7 +307,7 @@ impl HairSim {
     /// Records one kernel of all sections, or nothing where a section has none. [`HairSim::step`] does this; tests and
     /// measurements of single kernels do it themselves.
     pub fn record_stage(&self, list: &mut PassList, stage: Stage) {
-        self.sections.iter().for_each(|section| section.record(list, stage, StepBuffer::ALONE));
+        self.sections.iter().for_each(|section| section.record(list, stage, ALONE));
     }
 
     /// Frees everything.
@@ -327,7 +326,7 @@ impl HairSim {
         self.resets += 1;
         for section in &self.sections {
             let step = Step::reset(section.params(), &section.info, rotation);
-            section.buffers.steps.upload(list, StepBuffer::ALONE, &[step]);
+            section.buffers.steps.upload(list, ALONE, &[step]);
         }
         Solver::RESET.iter().for_each(|&stage| self.record_stage(list, stage));
     }
@@ -348,10 +347,10 @@ impl HairSim {
                 Step::new(section.params(), &section.info, sub_step, input.wind.as_ref()).with_capsules(first, end)
             };
             let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
-            section.buffers.steps.upload(list, StepBuffer::FIRST, &steps);
+            section.buffers.steps.upload(list, FIRST, &steps);
         }
         for (index, (sub_step, ranges)) in sub_steps.iter().zip(&ranges).enumerate() {
-            self.record_sub_step(list, StepBuffer::FIRST + index, sub_step, input.wind.is_some(), ranges);
+            self.record_sub_step(list, FIRST + index, sub_step, input.wind.is_some(), ranges);
         }
         self.capsules = capsules;
     }

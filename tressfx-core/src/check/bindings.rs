@@ -91,9 +91,4 @@ impl Known<'_> {
         }
         Ok(())
     }
-
-    /// A texture that is drawn to.
-    pub(super) fn target(&self, id: TextureId) -> Rule<&crate::backend::TextureDesc> {
-        self.texture(id, TextureUses::TARGET)
-    }
 }

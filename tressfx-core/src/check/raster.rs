@@ -1,7 +1,7 @@
 //! Raster passes.
 
 use super::{Known, Rule};
-use crate::backend::{BufferUses, Depth, Format, RasterDesc};
+use crate::backend::{BufferUses, Depth, Format, RasterDesc, TextureUses};
 use crate::error::Need;
 use crate::id::Resource;
 use crate::pass::{Count, Draw, Load, RasterPass};
@@ -50,7 +50,7 @@ impl Known<'_> {
         let mut found: Option<TargetFormats> = None;
         let ids: Vec<_> = pass.colors.iter().map(|(id, _)| *id).chain(pass.depth.iter().map(|(id, _)| *id)).collect();
         for (index, &id) in ids.iter().enumerate() {
-            let desc = self.target(id)?;
+            let desc = self.texture(id, TextureUses::TARGET)?;
             let wants_depth = index >= pass.colors.len();
             if desc.format.is_depth() != wants_depth {
                 return Err(format!("`{}` of the format {:?} is no such target", desc.label, desc.format));
