@@ -69,7 +69,6 @@ fn expected(stage: Stage, rig: &Rig, step: &Step, capsules: &[(Capsule, CapsuleM
         };
         match stage {
             Stage::Integrate => reference::integrate(step, &mut of_guide),
-            Stage::VelocityShock => reference::velocity_shock(step, &mut of_guide),
             Stage::LocalShape => {
                 reference::local_shape(step, &mut of_guide, params.local_iterations);
             }

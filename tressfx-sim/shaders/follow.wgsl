@@ -1,4 +1,4 @@
-// Places the follow strands beside their guides. One thread a vertex of a guide.
+// Places the follow strands beside their guides. One thread a vertex of a follow strand.
 
 import package::grid::{GROUP, thread_index};
 import package::root::root_of;
@@ -11,16 +11,14 @@ import package::vector::rotate;
 @compute @workgroup_size(GROUP)
 fn follow(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
           @builtin(local_invocation_index) lane: u32) {
-    let guide = thread_index(group, groups, lane);
-    if (guide >= step.guides) { return; }
+    // Follow strands come behind the guides, those of all guides in the same order.
+    let follow = thread_index(group, groups, lane);
+    if (follow >= step.strands - step.guides) { return; }
+    let guide = follow % step.guides;
     let vertex = group.z;
-    let rotation = root_of(guide).rotation;
+    let offset = rotate(root_of(guide).rotation, follow_offsets[follow].xyz);
     let position = positions[vertex * step.strands + guide];
-    for (var follow = 0u; follow < step.follows; follow++) {
-        let offset = rotate(rotation, follow_offsets[follow * step.guides + guide].xyz);
-        let place = vertex * step.strands + (1u + follow) * step.guides + guide;
-        positions[place] = vec4(beside(position.xyz, offset, vertex), position.w);
-    }
+    positions[vertex * step.strands + step.guides + follow] = vec4(beside(position.xyz, offset, vertex), position.w);
 }
 
 /// The place of a follow strand's vertex beside that of its guide; `offset` is the one between their roots.

@@ -1,5 +1,6 @@
-// Verlet integration with damping and gravity, and the pull towards the global shape; or back to the rest pose.
-// One thread a vertex of a guide.
+// Velocity shock propagation, Verlet integration with damping and gravity, and the pull towards the global shape; or back to the
+// rest pose. It is also the kernel that brings positions from the centre of the last sub-step to that of this one. One thread a
+// vertex of a guide.
 
 import package::grid::{GROUP, thread_index};
 import package::root::{Root, carried, root_of, shape_of};
@@ -27,10 +28,18 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
         previous[i] = vec4(shape, 0.0);
         return;
     }
-    let here = positions[place].xyz;
-    let free = moved_on(root, here, previous[i].xyz);
+    let here = shocked(root, positions[place].xyz);
+    let free = moved_on(root, here, shocked(root, previous[i].xyz));
     previous[i] = vec4(here, 0.0);
     positions[place] = vec4(pulled_to_shape(free, shape, vertex), rest_here.w);
+}
+
+/// A point that has made its share of the root's motion at once, so that a quick head does not leave its hair behind and the
+/// length constraints need not catch up. Position and past make it alike, and before the integration: the pull towards the
+/// global shape would else count this share a second time. `last` is relative to the centre of the last sub-step.
+fn shocked(root: Root, last: vec3<f32>) -> vec3<f32> {
+    let here = last - step.shift;
+    return here + step.shock * (carried(root, last) - here);
 }
 
 /// Where a vertex gets to by its own velocity and gravity.
@@ -39,7 +48,7 @@ fn moved_on(root: Root, here: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
 }
 
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
-/// speed of the car. The head's motion counts without the share that `velocity_shock` has made already.
+/// speed of the car. The head's motion counts without the share that the shock has made already.
 fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
     let left = (1.0 - step.shock) * (carried(root, before + step.shift) - before);
     let relative = displacement - left;

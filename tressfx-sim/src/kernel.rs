@@ -11,7 +11,6 @@ pub(crate) mod local_shape;
 pub(crate) mod recovery;
 pub(crate) mod roots;
 pub(crate) mod tangents;
-pub(crate) mod velocity_shock;
 pub(crate) mod wind;
 
 use std::sync::Arc;
@@ -123,6 +122,12 @@ impl PassMaker<'_> {
         over_vertices(self.guides(), self.buffers.strands.shape.vertices)
     }
 
+    /// A thread a vertex of a follow strand: along z the vertices.
+    fn follow_vertices(&self) -> Grid {
+        let shape = &self.buffers.strands.shape;
+        over_vertices(Grid::for_threads(shape.strands() - shape.guides, GROUP), shape.vertices)
+    }
+
     /// A thread a vertex of any strand: along z the vertices.
     fn strand_vertices(&self) -> Grid {
         let shape = &self.buffers.strands.shape;
@@ -140,12 +145,11 @@ mod tests {
 
     /// The work of several kernels in one, on the vertices of a strand in registers.
     const FUSED: &str = "
-        import package::integrate::moved_on;
+        import package::integrate::{moved_on, shocked};
         import package::lengths::{Placing, Window, place, sweep};
         import package::local_shape::{BentEdge, bent};
         import package::root::root_of;
         import package::step::step;
-        import package::velocity_shock::shocked;
         import package::vector::DOWN;
         import package::wind::{across_edge, wind_of};
 
@@ -166,7 +170,7 @@ mod tests {
 
     #[test]
     fn one_kernel_can_do_the_work_of_several() {
-        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, velocity_shock::SOURCE, wind::SOURCE];
+        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, wind::SOURCE];
         let library: Vec<Module> = LIBRARY.iter().copied().chain(kernels.map(|source| source.root)).collect();
         let text = format!("import package::constants::SWEEPS;\n{FUSED}");
         let source = ShaderSource { label: "test.fused", root: ("fused", text.leak()), library: Vec::leak(library) };

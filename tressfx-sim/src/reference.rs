@@ -13,7 +13,6 @@ mod roots;
 mod simulation;
 mod tangents;
 mod vector;
-mod velocity_shock;
 mod wind;
 
 use glam::{DVec3, Vec4};
@@ -30,7 +29,6 @@ pub use recovery::recovery;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
 pub use tangents::tangents;
-pub use velocity_shock::velocity_shock;
 pub use wind::wind;
 
 /// One guide; a slice of each array of its section.

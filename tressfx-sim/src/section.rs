@@ -15,7 +15,6 @@ use crate::kernel::local_shape::local_shape;
 use crate::kernel::recovery::recovery;
 use crate::kernel::roots::roots;
 use crate::kernel::tangents::tangents;
-use crate::kernel::velocity_shock::velocity_shock;
 use crate::kernel::wind::wind;
 use crate::kernel::{Kernels, Pass, PassMaker};
 use crate::params::SimParams;
@@ -46,7 +45,6 @@ pub(crate) struct SimSection {
 #[derive(Debug)]
 struct Passes {
     roots: Option<Pass>,
-    velocity_shock: Pass,
     integrate: Pass,
     local_shape: Pass,
     wind: Pass,
@@ -103,7 +101,6 @@ impl SimSection {
         let passes = &self.passes;
         let pass = match stage {
             Stage::Roots => passes.roots.as_ref(),
-            Stage::VelocityShock => Some(&passes.velocity_shock),
             Stage::Integrate => Some(&passes.integrate),
             Stage::LocalShape => Some(&passes.local_shape),
             Stage::Wind => Some(&passes.wind),
@@ -126,7 +123,6 @@ impl Passes {
     fn new(maker: &mut PassMaker, params: &SimParams) -> Result<Self> {
         Ok(Self {
             roots: roots(maker)?,
-            velocity_shock: velocity_shock(maker)?,
             integrate: integrate(maker, params)?,
             local_shape: local_shape(maker)?,
             wind: wind(maker)?,

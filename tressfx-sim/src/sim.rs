@@ -349,8 +349,8 @@ impl HairSim {
             let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
             section.buffers.steps.upload(list, FIRST, &steps);
         }
-        for (index, (sub_step, ranges)) in sub_steps.iter().zip(&ranges).enumerate() {
-            self.record_sub_step(list, FIRST + index, sub_step, input.wind.is_some(), ranges);
+        for (index, ranges) in ranges.iter().enumerate() {
+            self.record_sub_step(list, FIRST + index, input.wind.is_some(), ranges);
         }
         self.capsules = capsules;
     }
@@ -360,7 +360,6 @@ impl HairSim {
         &self,
         list: &mut PassList,
         place: usize,
-        sub_step: &SubStep,
         wind: bool,
         capsules: &[[u32; 2]],
     ) {
@@ -368,8 +367,7 @@ impl HairSim {
         let most = self.sections.iter().map(|section| stages(section).len()).max().unwrap_or(0);
         for index in 0..most {
             for (section, &[first, end]) in self.sections.iter().zip(capsules) {
-                let own_roots = section.buffers.roots.is_some();
-                let conditions = Conditions::new(sub_step, own_roots, wind, first < end);
+                let conditions = Conditions { wind, capsules: first < end };
                 let stage = stages(section).get(index).filter(|&&stage| section.needs(stage, conditions));
                 stage.iter().for_each(|&&stage| section.record(list, stage, place));
             }

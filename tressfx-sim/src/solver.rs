@@ -1,6 +1,5 @@
 //! Which stages make a sub-step.
 
-use crate::clock::SubStep;
 use crate::params::SimParams;
 use crate::stage::Stage;
 
@@ -16,17 +15,9 @@ pub enum Solver {
 /// What decides whether a stage has an effect in a sub-step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conditions {
-    /// Whether nothing moves the roots.
-    pub(crate) still: bool,
     pub(crate) wind: bool,
     /// Whether the section has capsules to collide with.
     pub(crate) capsules: bool,
-}
-
-impl Conditions {
-    pub(crate) fn new(sub_step: &SubStep, own_roots: bool, wind: bool, capsules: bool) -> Self {
-        Self { still: sub_step.is_still() && !own_roots, wind, capsules }
-    }
 }
 
 impl Solver {
@@ -40,7 +31,6 @@ impl Solver {
         match self {
             Self::TressFx => &[
                 Stage::Roots,
-                Stage::VelocityShock,
                 Stage::Integrate,
                 Stage::LocalShape,
                 Stage::Wind,
@@ -54,7 +44,6 @@ impl Solver {
     /// Whether a stage changes anything.
     pub(crate) fn needs(self, stage: Stage, params: &SimParams, vertices: u32, conditions: Conditions) -> bool {
         match stage {
-            Stage::VelocityShock => !conditions.still,
             Stage::LocalShape => params.has_local_shape(vertices),
             Stage::Wind => conditions.wind && params.wind_drag > 0.0,
             Stage::Collide => conditions.capsules,

@@ -8,9 +8,7 @@ use tressfx_core::error::Label;
 pub enum Stage {
     /// Where the roots are; only where they have transforms of their own.
     Roots,
-    /// Strands make a share of the head's motion at once.
-    VelocityShock,
-    /// Verlet integration and global shape; or the reset to the rest pose.
+    /// Velocity shock, Verlet integration and global shape; or the reset to the rest pose.
     Integrate,
     /// Edges want the angles of the rest pose.
     LocalShape,
@@ -33,7 +31,6 @@ impl Stage {
     pub fn label(self) -> Label {
         match self {
             Self::Roots => "hair.sim.roots",
-            Self::VelocityShock => "hair.sim.velocity_shock",
             Self::Integrate => "hair.sim.integrate",
             Self::LocalShape => "hair.sim.local_shape",
             Self::Wind => "hair.sim.wind",

@@ -225,7 +225,6 @@ macro_rules! each_case {
             }
             hair {
                 integrate_is_as_in_f64: [Compute ReadBack];
-                velocity_shock_is_as_in_f64: [Compute ReadBack];
                 local_shape_is_as_in_f64: [Compute ReadBack];
                 wind_is_as_in_f64: [Compute ReadBack];
                 lengths_is_as_in_f64: [Compute ReadBack];

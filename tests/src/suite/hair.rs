@@ -89,10 +89,6 @@ pub(super) fn integrate_is_as_in_f64(t: &mut Subject) {
     kernel(t, Kernel::Integrate, |step, guide, _, _| reference::integrate(step, guide));
 }
 
-pub(super) fn velocity_shock_is_as_in_f64(t: &mut Subject) {
-    kernel(t, Kernel::VelocityShock, |step, guide, _, _| reference::velocity_shock(step, guide));
-}
-
 pub(super) fn local_shape_is_as_in_f64(t: &mut Subject) {
     let iterations = params().local_iterations;
     kernel(t, Kernel::LocalShape, |step, guide, _, _| reference::local_shape(step, guide, iterations));

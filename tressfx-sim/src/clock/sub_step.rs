@@ -46,17 +46,12 @@ impl SubStep {
             share_of_remaining_frame: 1.0,
         }
     }
-
-    /// Whether the head stays where it is.
-    pub fn is_still(&self) -> bool {
-        self.turn == Quat::IDENTITY && self.shift == Vec3::ZERO
-    }
 }
 
 /// The sub-steps of one frame, and what happens before them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramePlan {
-    /// EarlierFrame the sub-steps the strands are reset to the rest pose, on a head with this rotation.
+    /// Before the sub-steps the strands are reset to the rest pose, on a head with this rotation.
     pub reset: Option<Quat>,
     /// Whether that is because of a teleport.
     pub teleported: bool,

@@ -16,5 +16,5 @@ pub(crate) fn follow(maker: &mut PassMaker) -> Result<Option<Pass>> {
     let buffers = maker.buffers;
     let Some(offsets) = buffers.follow_offsets else { return Ok(None) };
     let resources = [("follow_offsets", offsets.into()), ("positions", buffers.strands.positions.into())];
-    maker.pass_with_roots(&SOURCE, Specialization::new(), &resources, maker.guide_vertices()).map(Some)
+    maker.pass_with_roots(&SOURCE, Specialization::new(), &resources, maker.follow_vertices()).map(Some)
 }

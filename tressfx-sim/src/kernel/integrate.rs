@@ -1,4 +1,4 @@
-//! `hair.sim.integrate`: Verlet integration and global shape; also the reset to the rest pose.
+//! `hair.sim.integrate`: velocity shock, Verlet integration and global shape; also the reset to the rest pose.
 
 use tressfx_core::Result;
 use tressfx_core::shader::{ShaderSource, Specialization};

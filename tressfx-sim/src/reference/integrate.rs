@@ -7,7 +7,7 @@ use super::roots::RootMotion;
 use super::vector::position;
 use crate::step::Step;
 
-/// Verlet integration with damping and gravity, and the pull towards the global shape; or back to the rest pose.
+/// Velocity shock, Verlet integration with damping and gravity, and the pull towards the global shape; or back to the rest pose.
 pub fn integrate(step: &Step, guide: &mut Guide) {
     let (last, root) = ((guide.vertices() - 1) as f64, guide.root(step));
     for i in 0..guide.vertices() {
@@ -17,7 +17,7 @@ pub fn integrate(step: &Step, guide: &mut Guide) {
             guide.previous[i] = shape;
             continue;
         }
-        let (here, before) = (guide.positions[i], guide.previous[i]);
+        let (here, before) = (shocked(step, &root, guide.positions[i]), shocked(step, &root, guide.previous[i]));
         let mut goal = here
             + f64::from(step.velocity_kept) * bounded(step, &root, here - before, before)
             + step.gravity.as_dvec3();
@@ -29,6 +29,12 @@ pub fn integrate(step: &Step, guide: &mut Guide) {
         guide.previous[i] = here;
         guide.positions[i] = goal;
     }
+}
+
+/// A point that has made its share of the root's motion.
+fn shocked(step: &Step, root: &RootMotion, last: DVec3) -> DVec3 {
+    let here = last - step.shift.as_dvec3();
+    here + f64::from(step.shock) * (root.carried(last) - here)
 }
 
 /// The displacement, no longer than allowed relative to the head, whose motion counts without the share of the shock.

@@ -6,11 +6,11 @@ use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
 use super::{
-    Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots, velocity_shock,
+    Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots,
     wind,
 };
 use crate::buffers::RootTransform;
-use crate::clock::{Clock, ClockParams, SubStep};
+use crate::clock::{Clock, ClockParams};
 use crate::collider::CapsuleMotion;
 use crate::error::SimError;
 use crate::input::StepInput;
@@ -85,7 +85,7 @@ impl<'a> Simulation<'a> {
                 section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
                 let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
                 let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
-                self.non_finite += section.sub_step(&capsules, sub_step, input.wind.is_some());
+                self.non_finite += section.sub_step(&capsules, input.wind.is_some());
             }
         }
         Ok(StepReport {
@@ -156,14 +156,10 @@ impl<'a> Section<'a> {
     }
 
     /// One sub-step; says how many strands had become non-finite.
-    fn sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], sub_step: &SubStep, in_wind: bool) -> u64 {
+    fn sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], in_wind: bool) -> u64 {
         let mut non_finite = 0;
         self.move_roots();
-        let moves = !sub_step.is_still() || !self.roots.is_empty();
         self.each_guide(|step, params, index, guide| {
-            if moves {
-                velocity_shock(step, guide);
-            }
             integrate(step, guide);
             if params.has_local_shape(guide.vertices() as u32) {
                 local_shape(step, guide, params.local_iterations);
