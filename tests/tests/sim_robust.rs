@@ -11,8 +11,8 @@ use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::step::Step;
 use tressfx_sim::{
-    ClockParams, Collider, HairSim, RootTransform, SectionDesc, SimError, SimParams, Solver, Stage, StepInput,
-    Wind, metrics,
+    ClockParams, Collider, HairSim, RootTransform, SectionDesc, SimError, SimParams, Solver, Stage, StepInput, Wind,
+    metrics,
 };
 
 use support::{rig, rig_of_sections};

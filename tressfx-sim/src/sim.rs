@@ -356,13 +356,7 @@ impl HairSim {
     }
 
     /// `place` is where the steps are, `capsules` are the ranges of capsules of each section.
-    fn record_sub_step(
-        &self,
-        list: &mut PassList,
-        place: usize,
-        wind: bool,
-        capsules: &[[u32; 2]],
-    ) {
+    fn record_sub_step(&self, list: &mut PassList, place: usize, wind: bool, capsules: &[[u32; 2]]) {
         let stages = |section: &SimSection| section.solver().sub_step();
         let most = self.sections.iter().map(|section| stages(section).len()).max().unwrap_or(0);
         for index in 0..most {

@@ -5,10 +5,7 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
-use super::{
-    Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots,
-    wind,
-};
+use super::{Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots, wind};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
 use crate::collider::CapsuleMotion;
