@@ -1,6 +1,7 @@
-// Places the follow strands beside their guides. One thread a vertex of a follow strand.
+// Places the follow strands beside their guides. One thread a vertex of a follow strand: along x the guides, along y their
+// follow strands, along z the vertices.
 
-import package::grid::{GROUP, thread_index};
+import package::grid::GROUP;
 import package::root::root_of;
 import package::step::step;
 import package::vector::rotate;
@@ -11,14 +12,17 @@ import package::vector::rotate;
 @compute @workgroup_size(GROUP)
 fn follow(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
           @builtin(local_invocation_index) lane: u32) {
-    // Follow strands come behind the guides, those of all guides in the same order.
-    let follow = thread_index(group, groups, lane);
-    if (follow >= step.strands - step.guides) { return; }
-    let guide = follow % step.guides;
     let vertex = group.z;
-    let offset = rotate(root_of(guide).rotation, follow_offsets[follow].xyz);
-    let position = positions[vertex * step.strands + guide];
-    positions[vertex * step.strands + step.guides + follow] = vec4(beside(position.xyz, offset, vertex), position.w);
+    // The grid may hold fewer than all of them.
+    for (var guide = group.x * GROUP + lane; guide < step.guides; guide += groups.x * GROUP) {
+        let rotation = root_of(guide).rotation;
+        let position = positions[vertex * step.strands + guide];
+        for (var follow = group.y; follow < step.follows; follow += groups.y) {
+            let offset = rotate(rotation, follow_offsets[follow * step.guides + guide].xyz);
+            let place = vertex * step.strands + (1u + follow) * step.guides + guide;
+            positions[place] = vec4(beside(position.xyz, offset, vertex), position.w);
+        }
+    }
 }
 
 /// The place of a follow strand's vertex beside that of its guide; `offset` is the one between their roots.

@@ -19,30 +19,40 @@ fn local_shape(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     }
 }
 
+/// Vertices that are loaded at once, into registers: with eight there are too many.
+const CHUNK: u32 = 4u;
+
 /// The edge that a walk is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge adds the
 /// smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
 struct BentEdge { frame: vec4<f32>, here: vec4<f32>, next: vec4<f32> }
 
 fn walk(strand: u32) {
-    // Positions are about the root, see `lengths`.
+    // Positions are relative to the root, see `lengths`.
     let root = positions[strand].xyz;
+    let tip = step.vertices - 1u;
     var edge = BentEdge(root_of(strand).rotation, vec4(vec3(0.0), positions[strand].w), from_root(root, positions[step.strands + strand]));
     var rest_here = rest[strand].xyz;
     var rest_next = rest[step.guides + strand].xyz;
-    for (var i = 0u; i < step.vertices - 1u; i++) {
-        // Loaded before this vertex is stored: loads behind a store to the same buffer would wait for it.
-        let ahead = min(i + 2u, step.vertices - 1u);
-        let position_ahead = from_root(root, positions[ahead * step.strands + strand]);
-        let rest_ahead = rest[ahead * step.guides + strand].xyz;
-
-        edge = bent(edge, rest_next - rest_here);
-        positions[i * step.strands + strand] = from_root(-root, edge.here);
-        edge.here = edge.next;
-        edge.next = position_ahead;
-        rest_here = rest_next;
-        rest_next = rest_ahead;
+    for (var start = 0u; start < tip; start += CHUNK) {
+        // Loaded before the first of these vertices is stored: loads behind a store to the same buffer would wait for it.
+        var ahead: array<vec4<f32>, CHUNK>;
+        var rest_ahead: array<vec3<f32>, CHUNK>;
+        for (var i = 0u; i < CHUNK; i++) {
+            let vertex = min(start + i + 2u, tip);
+            ahead[i] = positions[vertex * step.strands + strand];
+            rest_ahead[i] = rest[vertex * step.guides + strand].xyz;
+        }
+        for (var i = 0u; i < CHUNK; i++) {
+            if (start + i >= tip) { break; }
+            edge = bent(edge, rest_next - rest_here);
+            positions[(start + i) * step.strands + strand] = from_root(-root, edge.here);
+            edge.here = edge.next;
+            edge.next = from_root(root, ahead[i]);
+            rest_here = rest_next;
+            rest_next = rest_ahead[i];
+        }
     }
-    positions[(step.vertices - 1u) * step.strands + strand] = from_root(-root, edge.here);
+    positions[tip * step.strands + strand] = from_root(-root, edge.here);
 }
 
 /// An edge that has made its share of the way to its rest pose, and the frame behind it.

@@ -122,10 +122,12 @@ impl PassMaker<'_> {
         over_vertices(self.guides(), self.buffers.strands.shape.vertices)
     }
 
-    /// A thread a vertex of a follow strand: along z the vertices.
+    /// A thread a vertex of a follow strand: along x the guides, along y their follow strands, along z the vertices. Where that
+    /// is too many groups, a thread does the work of several.
     fn follow_vertices(&self) -> Grid {
         let shape = &self.buffers.strands.shape;
-        over_vertices(Grid::for_threads(shape.strands() - shape.guides, GROUP), shape.vertices)
+        let groups = [shape.guides.div_ceil(GROUP), shape.follows].map(|count| count.clamp(1, Grid::MAX_GROUPS));
+        Grid([groups[0], groups[1], shape.vertices])
     }
 
     /// A thread a vertex of any strand: along z the vertices.

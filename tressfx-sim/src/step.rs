@@ -63,6 +63,8 @@ gpu_struct! {
         pub strands: u32,
         /// Vertices of each strand.
         pub vertices: u32,
+        /// Follow strands of each guide.
+        pub follows: u32,
         /// Iterations of the local shape constraints.
         pub local_iterations: u32,
         /// Share of the way to where the roots are at the end of the frame that they make in this sub-step.
@@ -71,8 +73,6 @@ gpu_struct! {
         pub first_capsule: u32,
         /// The capsule after the last one.
         pub end_capsule: u32,
-        /// Nothing.
-        pub unused: u32,
     }
 }
 
@@ -157,11 +157,11 @@ impl Step {
             guides: info.shape.guides,
             strands: info.shape.strands(),
             vertices: info.shape.vertices,
+            follows: info.shape.follows,
             local_iterations: params.local_iterations,
             root_share: sub.share_of_remaining_frame as f32,
             first_capsule: 0,
             end_capsule: 0,
-            unused: 0,
         }
     }
 }

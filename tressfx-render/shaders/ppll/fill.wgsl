@@ -52,7 +52,7 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         granted = request(atomicLoad(&requested));
     }
     workgroupBarrier();
-    if granted < pool.capacity {
+    if counted.count > 0u && granted < pool.capacity {
         var stored = Sink(granted + place, counted.count, 0u);
         walk(ribbon, paint, &stored);
     }

@@ -17,6 +17,8 @@ struct Ribbon {
     nearness: vec2<f32>,
     // Where the ends are on the segment that it was cut from, 0 to 1.
     part: vec2<f32>,
+    // 1 / w at the ends: what is linear along the segment is not linear on the screen.
+    scale: vec2<f32>,
     visible: bool,
 }
 
@@ -64,14 +66,14 @@ fn project(a: End, b: End, lens: LensUniform) -> Ribbon {
     let width = width_scale(lens, ribbon.end - ribbon.start);
     ribbon.half_width = mix(vec2(a.radius), vec2(b.radius), part) * (width * scale);
     ribbon.part = part;
+    ribbon.scale = scale;
     ribbon.visible = true;
     return ribbon;
 }
 
 // Where on a segment, 0 to 1, its screen parameter `t` is, that is 0 and 1 at the ribbon's ends.
-fn along(ribbon: Ribbon, lens: LensUniform, t: f32) -> f32 {
-    let true_part = t * ribbon.nearness.y / mix(ribbon.nearness.x, ribbon.nearness.y, t);
-    return mix(ribbon.part.x, ribbon.part.y, select(t, true_part, lens.is_perspective == 1u));
+fn along(ribbon: Ribbon, t: f32) -> f32 {
+    return mix(ribbon.part.x, ribbon.part.y, t * ribbon.scale.y / mix(ribbon.scale.x, ribbon.scale.y, t));
 }
 
 // Cuts off what is further than `margin` outside the image, so that coordinates stay small.
@@ -91,6 +93,7 @@ fn clip(ribbon: Ribbon, lens: LensUniform, size: vec2<f32>, margin: f32) -> Ribb
     cut.end = mix(ribbon.start, ribbon.end, t.y);
     cut.half_width = mix(ribbon.half_width.xx, ribbon.half_width.yy, t);
     cut.nearness = mix(ribbon.nearness.xx, ribbon.nearness.yy, t);
-    cut.part = vec2(along(ribbon, lens, t.x), along(ribbon, lens, t.y));
+    cut.scale = mix(ribbon.scale.xx, ribbon.scale.yy, t);
+    cut.part = vec2(along(ribbon, t.x), along(ribbon, t.y));
     return cut;
 }

@@ -34,7 +34,7 @@ fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fr
     }
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, t);
     let covered = coverage(dot(offset, line.normal), half_width, line.reach);
-    let color = mix(paint.start, paint.end, along(ribbon, view.lens, t));
+    let color = mix(paint.start, paint.end, along(ribbon, t));
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, t);
     let depth = textureLoad(scene_depth, pixel + view.offset, 0);
     let scene = (depth - view.lens.depth_offset) * view.lens.depth_scale;
