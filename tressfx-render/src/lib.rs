@@ -15,12 +15,15 @@
 #![forbid(unsafe_code)]
 
 mod bound;
+mod composite;
+mod counters;
 mod lights;
 mod material;
 mod ppll;
 mod predict;
 pub mod reference;
 mod renderer;
+mod resolved;
 mod shade;
 mod shaders;
 mod strands;
@@ -29,10 +32,12 @@ pub mod uniforms;
 mod views;
 mod visibility;
 
+pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{Counters, K_RANGE, PpllDesc, TILE};
+pub use ppll::{K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
+pub use resolved::TILE;
 pub use shaders::VIEW_MODULE;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
 pub use technique::Technique;

@@ -1,6 +1,5 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
-mod composite;
 mod fill;
 mod pool;
 mod resolve;
@@ -11,20 +10,21 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Module;
 
+use crate::composite::Composite;
 use crate::renderer::Targets;
+use crate::resolved::Resolved;
 use crate::shaders::{GROUP, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::TechniqueInstance;
 use crate::views::BoundView;
-use pool::{NodePool, Resolved};
+use pool::NodePool;
 
-pub use pool::Counters;
 #[cfg(test)]
 pub(crate) use pool::PoolUniform;
-pub use resolve::{K_RANGE, TILE};
+pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 10>([
+const LIBRARY: &[Module] = &with_shared::<2, 11>([
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
@@ -88,7 +88,7 @@ pub(crate) struct Ppll {
     desc: PpllDesc,
     fill: fill::Fill,
     resolve: resolve::Resolve,
-    composite: composite::Composite,
+    composite: Composite,
     pool: NodePool,
     resolved: Resolved,
 }
@@ -100,7 +100,7 @@ impl Ppll {
             desc: *desc,
             fill: fill::Fill::new(backend)?,
             resolve: resolve::Resolve::new(backend, desc.k)?,
-            composite: composite::Composite::new(backend, target)?,
+            composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
             resolved: Resolved::new(backend, size)?,
         })
@@ -140,7 +140,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
-        (self.pool.counters[view], 0)
+        (self.pool.counters.of(view), 0)
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {

@@ -6,8 +6,8 @@ use tressfx_core::id::TextureId;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{PoseError, View};
 
+use crate::counters::Counters;
 use crate::lights::MAX_LIGHTS;
-use crate::ppll::Counters;
 use crate::predict;
 use crate::shade::Shade;
 use crate::strands::SectionDraw;

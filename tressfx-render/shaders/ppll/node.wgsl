@@ -5,17 +5,6 @@ import package::fragment::Fragment;
 // Nodes are numbered from 1, so that a cleared head is an empty list.
 const NOTHING: u32 = 0u;
 
-struct Counters {
-    // Fragments that passed the depth test.
-    fragments: atomic<u32>,
-    // Of those, the ones that found no room in the pool.
-    dropped: u32,
-    // Pixels with at least one fragment.
-    pixels_with_hair: atomic<u32>,
-    // 1 where counting has ended at the limit.
-    saturated: u32,
-}
-
 struct PoolUniform {
     // Fragments that there is room for.
     capacity: u32,

@@ -4,8 +4,9 @@
 // are sorted under a total order, and sums of integers know no order.
 
 import package::constants::K;
+import package::counters::Counters;
 import package::fragment::OPAQUE;
-import package::node::{Counters, NOTHING, PoolUniform, node_alpha, node_color};
+import package::node::{NOTHING, PoolUniform, node_alpha, node_color};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;

@@ -8,16 +8,14 @@ use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::{Kernel, Specialization};
 
 use super::LIBRARY;
-use super::pool::{NodePool, Resolved};
+use super::pool::NodePool;
 use crate::bound::Bound;
+use crate::resolved::{Resolved, TILE};
 use crate::shaders::compute;
 use crate::views::BoundView;
 
 /// Fragments of a pixel that may be sorted exactly.
 pub const K_RANGE: RangeInclusive<u32> = 1..=16;
-
-/// Pixels along the edge of a tile: a group of this kernel, and what `hair.render.composite` draws or leaves out.
-pub const TILE: u32 = 8;
 
 #[derive(Debug)]
 pub(crate) struct Resolve {
@@ -48,7 +46,7 @@ impl Resolve {
                 ("pool", pool.uniform.into()),
                 ("heads", pool.heads.into()),
                 ("nodes", pool.nodes.into()),
-                ("counters", pool.counters[view.index].into()),
+                ("counters", pool.counters.of(view.index).into()),
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
             ])
