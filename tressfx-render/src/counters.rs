@@ -48,6 +48,9 @@ impl Counters {
 pub(crate) struct ViewCounters([BufferId; MAX_VIEWS]);
 
 impl ViewCounters {
+    /// Size of all of them on the GPU.
+    pub(crate) const BYTES: u64 = MAX_VIEWS as u64 * Counters::BYTES;
+
     pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
         let made: Result<Vec<_>> =
             (0..MAX_VIEWS).map(|_| storage(backend, "hair.render.counters", Counters::BYTES)).collect();

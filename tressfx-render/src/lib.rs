@@ -5,7 +5,11 @@
 //! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
 //! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
 //! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
-//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        Technique::Ppll
+//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        every technique
+//!
+//! hair.render.shortcut_depths   compute  one thread a strand segment: the K nearest depths of pixels       Technique::ShortCut
+//! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the Kth depth        Technique::ShortCut
+//! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                       Technique::ShortCut
 //! ```
 //!
 //! The last column says what writes the pass. This crate writes passes into a [`PassList`](tressfx_core::pass::PassList). It
@@ -26,6 +30,7 @@ mod renderer;
 mod resolved;
 mod shade;
 mod shaders;
+mod shortcut;
 mod strands;
 mod technique;
 pub mod uniforms;
@@ -39,6 +44,7 @@ pub use ppll::{K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
 pub use shaders::VIEW_MODULE;
+pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
 pub use technique::Technique;
 pub use views::{MAX_VIEWS, ViewDraw};

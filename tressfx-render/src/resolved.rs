@@ -1,7 +1,7 @@
 //! What a technique leaves for `hair.render.composite`: one colour a pixel.
 
 use tressfx_core::backend::{Backend, BufferDesc};
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::BufferId;
 
 /// Pixels along the edge of a tile: what `hair.render.composite` draws or leaves out.
@@ -17,8 +17,16 @@ pub(crate) struct Resolved {
 }
 
 impl Resolved {
+    /// Bytes of a pixel in `colors`.
+    pub(crate) const PIXEL_BYTES: u64 = 8;
+
+    /// Bytes of both for `size` pixels.
+    pub(crate) fn bytes(size: [u32; 2]) -> u64 {
+        (Self::PIXEL_BYTES * pixels(size)).max(16) + (4 * u64::from(tile_count(size))).max(16)
+    }
+
     pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
-        let colors = storage(backend, "hair.render.resolved", 8 * pixels(size))?;
+        let colors = storage(backend, "hair.render.resolved", Self::PIXEL_BYTES * pixels(size))?;
         Ok(Self { colors, tiles: storage(backend, "hair.render.tiles", 4 * u64::from(tile_count(size)))? })
     }
 
@@ -30,6 +38,18 @@ impl Resolved {
 /// A storage buffer that exists even if there is nothing to store.
 pub(crate) fn storage(backend: &mut dyn Backend, label: Label, bytes: u64) -> Result<BufferId> {
     backend.create_buffer(&BufferDesc::storage(label, bytes.max(16)))
+}
+
+/// Pixels that a view can have: a group of 64 segments, of which each may cover all of them, counts in 31 bits.
+pub(crate) const MAX_PIXELS: u64 = 1 << 25;
+
+/// Whether a picture of this size can be drawn.
+pub(crate) fn check_pixels(size: [u32; 2]) -> Result<()> {
+    if pixels(size) > MAX_PIXELS {
+        let message = format!("a picture of {} x {} pixels, it may have {MAX_PIXELS}", size[0], size[1]);
+        return Err(Error::Backend { label: "hair.render", message });
+    }
+    Ok(())
 }
 
 /// Pixels of a picture of this size.

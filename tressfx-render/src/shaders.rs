@@ -13,7 +13,7 @@ pub(crate) const GROUP: u32 = 64;
 pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wgsl"));
 
 /// What all kernels may import. `walk` asks for a module `sink`, which is the technique's.
-pub(crate) const SHARED: [Module; 9] = [
+pub(crate) const SHARED: [Module; 10] = [
     VIEW_MODULE,
     ("counters", include_str!("../shaders/shared/counters.wgsl")),
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
@@ -22,6 +22,7 @@ pub(crate) const SHARED: [Module; 9] = [
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
     ("section", include_str!("../shaders/shared/section.wgsl")),
     ("strands", include_str!("../shaders/shared/strands.wgsl")),
+    ("sums", include_str!("../shaders/shared/sums.wgsl")),
     ("walk", include_str!("../shaders/shared/walk.wgsl")),
 ];
 

@@ -76,9 +76,11 @@ impl Studio {
             dropped: u64::from(counters.dropped),
             pixels_with_hair: u64::from(counters.pixels_with_hair),
             peak_gpu_bytes: 0,
+            oit_bytes: 0,
         };
         let before = self.renderer.capacity();
         self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
+        self.drawn.oit_bytes = self.renderer.technique_bytes();
         Ok(self.renderer.capacity() > before)
     }
 

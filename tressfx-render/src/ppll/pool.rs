@@ -93,6 +93,12 @@ impl NodePool {
         list.clear(self.heads, 0, 4 * pixels(size));
     }
 
+    /// What it takes for `size` pixels.
+    pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
+        let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
+        (4 * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::BYTES
+    }
+
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
         self.counters.destroy(backend);
         [self.heads, self.nodes, self.uniform].into_iter().for_each(|buffer| backend.destroy(buffer.into()));

@@ -24,10 +24,7 @@ pub(crate) struct Resolve {
 }
 
 impl Resolve {
-    /// # Panics
-    /// If `k` is outside [`K_RANGE`].
     pub(crate) fn new(backend: &mut dyn Backend, k: u32) -> Result<Self> {
-        assert!(K_RANGE.contains(&k), "k is {k}, it must be in {K_RANGE:?}");
         let root = ("resolve", include_str!("../../shaders/ppll/resolve.wgsl"));
         let kernel = compute(backend, "hair.render.resolve", root, LIBRARY, &Specialization::new().constant("K", k))?;
         Ok(Self { kernel, bound: Bound::new() })
