@@ -9,7 +9,7 @@ use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
     Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
-    ViewDraw, reference, uniforms,
+    Technique, ViewDraw, reference, uniforms,
 };
 
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -164,7 +164,20 @@ pub struct Setup {
     /// Pixels.
     pub size: [u32; 2],
     /// The technique.
-    pub technique: PpllDesc,
+    pub technique: Technique,
+}
+
+impl Setup {
+    /// The lists of fragments that are the technique.
+    ///
+    /// # Panics
+    /// If the technique has been changed to another.
+    pub fn ppll(&mut self) -> &mut PpllDesc {
+        match &mut self.technique {
+            Technique::Ppll(desc) => desc,
+            other => panic!("the technique is {other:?}"),
+        }
+    }
 }
 
 impl Default for Setup {
@@ -178,7 +191,7 @@ impl Default for Setup {
             far: 50.0,
             depth: DepthOrder::Reverse,
         };
-        Self { camera, size: [96, 64], technique: PpllDesc::default() }
+        Self { camera, size: [96, 64], technique: Technique::default() }
     }
 }
 

@@ -10,7 +10,7 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, Technique,
     ViewDraw,
 };
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams};
@@ -45,8 +45,8 @@ pub struct Scene {
     pub from: Vec3,
     /// How near the eye is, as a share of the distance at which everything is in the picture.
     pub distance: f32,
-    /// Fragments of a pixel that are sorted exactly.
-    pub k: u32,
+    /// How fragments are sorted and blended.
+    pub technique: Technique,
     /// Width and height of the picture.
     pub size: [u32; 2],
 }
@@ -65,7 +65,7 @@ impl Scene {
             material: Material::default(),
             from: Vec3::Z,
             distance: 1.0,
-            k: 8,
+            technique: Technique::default(),
             size,
         }
     }
@@ -122,7 +122,7 @@ impl<B: Run> Show<B> {
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
         let section = ShadedStrands::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
         let section = section.expect("a section");
-        let desc = RenderDesc::new(scene.size, TARGET).technique(PpllDesc::default().k(scene.k));
+        let desc = RenderDesc::new(scene.size, TARGET).technique(scene.technique);
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
         let draw = SectionDraw::new(&section, &scene.material, sim.pose());
         renderer.grow_to_predicted(gpu, &view, &[draw]).expect("a pool");

@@ -10,7 +10,7 @@ use tressfx_compare::{Comparison, Picture, compare};
 use tressfx_conformance::show::{Scene, Show};
 use tressfx_conformance::sim::{REAL, real};
 use tressfx_core::backend::{Backend, Run};
-use tressfx_render::Material;
+use tressfx_render::{Material, PpllDesc};
 use tressfx_sim::SimParams;
 
 use support::gpu;
@@ -52,7 +52,7 @@ fn scenes(groom: &Scene) -> Vec<Scene> {
             distance: *distance,
             params: params.clone(),
             material: *material,
-            k: *k,
+            technique: PpllDesc::default().k(*k).into(),
             ..groom.clone()
         })
         .collect()

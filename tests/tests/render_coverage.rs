@@ -107,7 +107,7 @@ fn opacity_counts_once() {
 
 #[test]
 fn the_tip_has_its_own_width_and_opacity() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 1) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 1) else { return };
     let material = flat(&mut screen, opaque(0.1)).with(|m| m.tip_opacity = 0.25);
     let groom = Groom::new(&[line(0.0, 2)], material);
     let pixels = screen.hair(&[&groom]).pixels();

@@ -24,7 +24,7 @@ fn strands(count: u32) -> Vec<Vec<Vec3>> {
 
 #[test]
 fn positions_that_are_not_finite_leave_out_their_segments_alone() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let whole = Groom::new(&strands(30), material());
     let expected = screen.hair(&[&whole]);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -1e13] {
@@ -46,7 +46,7 @@ fn positions_that_are_not_finite_leave_out_their_segments_alone() {
 
 #[test]
 fn segments_without_length_draw_nothing_and_hide_nothing() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let strands = strands(30);
     let expected = screen.hair(&[&Groom::new(&strands, material())]);
     let point = |strand: &Vec<Vec3>| vec![strand[3]; 8];
@@ -60,7 +60,7 @@ fn segments_without_length_draw_nothing_and_hide_nothing() {
 
 #[test]
 fn tangents_that_are_not_finite_do_not_spoil_their_neighbours() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 1) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 1) else { return };
     let mut groom = Groom::new(&strands(30), material());
     groom.tangents[3 * 30 + 4] = [f32::NAN; 4];
     let picture = screen.hair(&[&groom]);

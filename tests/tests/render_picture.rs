@@ -25,7 +25,7 @@ fn nothing(screen: &Screen) -> impl Fn([u32; 2]) -> f32 + use<> {
 
 #[test]
 fn few_strands_are_as_in_f64() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let groom = Groom::wavy(60, 12, 1, material());
     let picture = screen.hair(&[&groom]);
     let exact = reference::exact(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen));
@@ -83,7 +83,7 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
     let groom = Groom::wavy(1500, 16, 4, material().with(|m| m.variation = 1.0));
     let mut psnr = Vec::new();
     for k in [1, 4, 8, 16] {
-        let Some(mut screen) = screen(|setup| setup.technique.k = k) else { return };
+        let Some(mut screen) = screen(|setup| setup.ppll().k = k) else { return };
         let exact = reference::exact(&screen.view, &screen.lights, &[groom.reference()], &nothing(&screen));
         psnr.push(screen.hair(&[&groom]).difference(&exact).psnr);
     }
@@ -94,7 +94,7 @@ fn more_sorted_fragments_come_closer_to_the_exact_picture() {
 
 #[test]
 fn the_supersampled_truth_is_near() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let groom = Groom::wavy(200, 16, 5, material().with(|m| m.fibre_radius = Some(0.003)));
     let truth = reference::supersampled(&screen.view, &screen.lights, &[groom.reference()], 8);
     let difference = screen.hair(&[&groom]).difference(&truth);
@@ -117,7 +117,7 @@ fn twice_the_same_picture_to_the_bit() {
 
 #[test]
 fn sections_are_sorted_against_each_other() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let blue = material().with(|m| {
         m.base_color = glam::Vec3::new(0.05, 0.1, 0.8);
         m.tip_color = glam::Vec3::new(0.05, 0.1, 0.8);
@@ -135,7 +135,7 @@ fn sections_are_sorted_against_each_other() {
 
 #[test]
 fn a_pose_moves_the_hair_with_its_light() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let rotation = glam::Quat::from_rotation_y(0.8) * glam::Quat::from_rotation_x(0.3);
     let pose = Pose { rotation, translation: glam::Vec3::new(0.1, -0.1, 0.2) };
     let groom = Groom { pose, ..Groom::wavy(60, 12, 9, material()) };

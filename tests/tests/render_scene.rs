@@ -49,7 +49,7 @@ fn what_is_in_front_hides_hair_and_what_is_behind_does_not() {
 fn depth_is_tested_as_in_f64() {
     let groom = Groom::wavy(300, 16, 2, material());
     for order in [DepthOrder::Standard, DepthOrder::Reverse] {
-        let Some(mut screen) = screen(|setup| (setup.technique.k, setup.camera.depth) = (16, order)) else { return };
+        let Some(mut screen) = screen(|setup| (setup.ppll().k, setup.camera.depth) = (16, order)) else { return };
         let mesh = wall(0.0, 0.1);
         let picture = screen.scene(&[&mesh], &[&groom]);
         let depth = screen.depth();
@@ -82,7 +82,7 @@ fn both_orders_of_depth_give_the_same_picture() {
 
 #[test]
 fn a_strand_that_passes_behind_the_eye_is_cut_at_the_near_plane() {
-    let Some(mut screen) = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
     let strand = |x: f32, y: f32| vec![Vec3::new(x, y, -2.0), Vec3::new(0.4 * x, 0.5 * y, 2.0), Vec3::new(-x, y, 6.0)];
     let strands: Vec<_> = (0..40).map(|i| strand(0.5 - 0.025 * i as f32, 0.3 - 0.013 * i as f32)).collect();
     let groom = Groom::new(&strands, material().with(|m| m.fibre_radius = Some(0.002)));

@@ -82,7 +82,7 @@ fn hold(name: &str, screen: &mut Screen, view: View) {
 
 fn hold_all(mut backend: impl FnMut() -> Option<Box<dyn Run>>) {
     let Some(first) = backend() else { return };
-    let setup = |setup: &mut Setup| (setup.technique.k, setup.size) = (16, SIZE);
+    let setup = |setup: &mut Setup| (setup.ppll().k, setup.size) = (16, SIZE);
     let mut screen = Screen::new(first, setup);
     for (name, view, projection, depth) in views() {
         hold(name, &mut screen, View::new(view, projection, depth, SIZE).unwrap());
@@ -113,7 +113,7 @@ fn views_of_one_frame_fill_their_parts_of_the_target() {
     for backend in [gpu().map(|gpu| gpu as Box<dyn Run>), VulkanBackend::headless().ok().map(|gpu| Box::new(gpu) as _)]
     {
         let Some(backend) = backend else { return };
-        let mut screen = Screen::new(backend, |setup| setup.technique.k = 16);
+        let mut screen = Screen::new(backend, |setup| setup.ppll().k = 16);
         let groom = groom();
         // Neither begins nor ends on a tile of 8 x 8.
         let parts = [([0, 0], [45, 64]), ([45, 3], [51, 37])];

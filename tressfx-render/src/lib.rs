@@ -5,7 +5,11 @@
 //! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
 //! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
 //! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
-//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        Technique::Ppll
+//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        every technique
+//!
+//! hair.render.shortcut_depths   compute  one thread a strand segment: the K nearest depths of pixels       Technique::ShortCut
+//! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the Kth depth        Technique::ShortCut
+//! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                       Technique::ShortCut
 //! ```
 //!
 //! The last column says what writes the pass. This crate writes passes into a [`PassList`](tressfx_core::pass::PassList). It
@@ -15,25 +19,32 @@
 #![forbid(unsafe_code)]
 
 mod bound;
+mod composite;
+mod counters;
 mod lights;
 mod material;
 mod ppll;
 mod predict;
 pub mod reference;
 mod renderer;
+mod resolved;
 mod shade;
 mod shaders;
+mod shortcut;
 mod strands;
 mod technique;
 pub mod uniforms;
 mod views;
 mod visibility;
 
+pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{Counters, K_RANGE, PpllDesc, TILE};
+pub use ppll::{K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
+pub use resolved::TILE;
 pub use shaders::VIEW_MODULE;
+pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
 pub use technique::Technique;
 pub use views::{MAX_VIEWS, ViewDraw};

@@ -1,30 +1,30 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
-mod composite;
 mod fill;
 mod pool;
 mod resolve;
 
 use tressfx_core::backend::{Backend, Format};
-use tressfx_core::error::{Error, Need, Result};
+use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Module;
 
+use crate::composite::Composite;
 use crate::renderer::Targets;
+use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::shaders::{GROUP, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::TechniqueInstance;
+use crate::technique::{TechniqueInstance, check_k};
 use crate::views::BoundView;
-use pool::{NodePool, Resolved};
+use pool::NodePool;
 
-pub use pool::Counters;
 #[cfg(test)]
 pub(crate) use pool::PoolUniform;
-pub use resolve::{K_RANGE, TILE};
+pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 10>([
+const LIBRARY: &[Module] = &with_shared::<2, 12>([
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
@@ -79,28 +79,28 @@ impl From<PpllDesc> for crate::Technique {
     }
 }
 
-/// Pixels of a view: a group of `hair.render.fill`, of which each thread may cover all of them, counts in 31 bits.
-const MAX_PIXELS: u64 = 1 << 25;
-
 /// Lists of fragments at work.
 #[derive(Debug)]
 pub(crate) struct Ppll {
     desc: PpllDesc,
+    size: [u32; 2],
     fill: fill::Fill,
     resolve: resolve::Resolve,
-    composite: composite::Composite,
+    composite: Composite,
     pool: NodePool,
     resolved: Resolved,
 }
 
 impl Ppll {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
+        check_k("hair.render.ppll", desc.k, &K_RANGE)?;
         check(backend, size)?;
         Ok(Self {
             desc: *desc,
+            size,
             fill: fill::Fill::new(backend)?,
             resolve: resolve::Resolve::new(backend, desc.k)?,
-            composite: composite::Composite::new(backend, target)?,
+            composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
             resolved: Resolved::new(backend, size)?,
         })
@@ -125,6 +125,7 @@ impl TechniqueInstance for Ppll {
         let resolved = Resolved::new(backend, size)?;
         std::mem::replace(&mut self.pool, pool).destroy(backend);
         std::mem::replace(&mut self.resolved, resolved).destroy(backend);
+        self.size = size;
         self.forget_bindings();
         Ok(())
     }
@@ -139,8 +140,12 @@ impl TechniqueInstance for Ppll {
         self.pool.capacity
     }
 
+    fn bytes(&self) -> u64 {
+        self.pool.bytes(self.size) + Resolved::bytes(self.size)
+    }
+
     fn counters(&self, view: usize) -> (BufferId, u64) {
-        (self.pool.counters[view], 0)
+        (self.pool.counters.of(view), 0)
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
@@ -169,13 +174,11 @@ fn groups(draw: &SectionDraw) -> u64 {
 
 /// Whether a device can draw hair on a screen of this size.
 fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
-    let pixels = u64::from(size[0]) * u64::from(size[1]);
-    let needs =
-        [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(8 * pixels)];
+    let needs = [
+        Need::StorageBuffers(6),
+        Need::TextureEdge(size[0].max(size[1])),
+        Need::StorageBindingBytes(Resolved::PIXEL_BYTES * pixels(size)),
+    ];
     backend.caps().check("hair.render", &needs)?;
-    if pixels > MAX_PIXELS {
-        let message = format!("a picture of {} x {} pixels, it may have {MAX_PIXELS}", size[0], size[1]);
-        return Err(Error::Backend { label: "hair.render", message });
-    }
-    Ok(())
+    check_pixels(size)
 }

@@ -8,15 +8,21 @@ mod image;
 mod projection;
 mod resolve;
 mod shade;
+mod shortcut_colors;
+mod shortcut_depths;
+mod shortcut_resolve;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::uniforms::SectionUniform;
 
 pub use fill::{Fragment, coverage, fill};
-pub use image::{exact, resolved, supersampled};
+pub use image::{exact, resolved, shortcut, supersampled};
 pub use resolve::resolve;
 pub use shade::shade;
+pub use shortcut_colors::shortcut_colors;
+pub use shortcut_depths::{LayerPlace, Layers, shortcut_depths};
+pub use shortcut_resolve::shortcut_resolve;
 
 /// The strands of a section on the CPU: what its buffers hold.
 #[derive(Clone, Copy, Debug)]

@@ -6,8 +6,8 @@ use tressfx_core::id::TextureId;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{PoseError, View};
 
+use crate::counters::Counters;
 use crate::lights::MAX_LIGHTS;
-use crate::ppll::Counters;
 use crate::predict;
 use crate::shade::Shade;
 use crate::strands::SectionDraw;
@@ -104,10 +104,7 @@ impl HairRenderer {
     /// Compiles the kernels and makes the buffers whose size depends on that of the view.
     ///
     /// # Errors
-    /// What the device lacks, or what the backend says.
-    ///
-    /// # Panics
-    /// If `k` is outside [`K_RANGE`](crate::K_RANGE).
+    /// A `k` that the technique does not take, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
         let ((order, views, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.target)?;
@@ -121,7 +118,12 @@ impl HairRenderer {
         &self.desc
     }
 
-    /// How many fragments the pool can hold at present.
+    /// Bytes of the buffers in which the technique keeps fragments and pixels at present.
+    pub fn technique_bytes(&self) -> u64 {
+        self.order.bytes()
+    }
+
+    /// How many fragments the pool can hold at present; all that can be counted where the technique has none.
     pub fn capacity(&self) -> u32 {
         self.order.capacity()
     }
@@ -231,24 +233,34 @@ mod tests {
 
     use super::*;
     use crate::ppll::{K_RANGE, Ppll, PpllDesc};
+    use crate::shortcut::{ShortCut, ShortCutDesc};
     use crate::uniforms::{LensUniform, LightUniform, SectionUniform, ViewUniform};
+
+    fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
+        let desc = ShortCutDesc::default().k(k).ordered(ordered);
+        ShortCut::new(backend, &desc, [64, 64], Format::Rgba16F).unwrap()
+    }
 
     #[test]
     fn structs_are_laid_out_as_in_the_wgsl() {
         let mut backend = NullBackend::default();
         let shade = Shade::new(&mut backend).unwrap();
         let ppll = Ppll::new(&mut backend, &PpllDesc::default(), [64, 64], Format::Rgba16F).unwrap();
+        let shortcut = shortcut(&mut backend, 3, false);
         let [fill, resolve, composite] = ppll.shaders();
-        for shader in [&*shade.kernel.shader, fill, resolve, composite] {
+        let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
+        for shader in [&*shade.kernel.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
             shader.check_layout::<ViewUniform>().unwrap();
             shader.check_layout::<LensUniform>().unwrap();
             shader.check_layout::<LightUniform>().unwrap();
         }
-        for shader in [&*shade.kernel.shader, fill] {
+        for shader in [&*shade.kernel.shader, fill, depths, colors] {
             shader.check_layout::<SectionUniform>().unwrap();
         }
-        for shader in [fill, resolve] {
+        for shader in [fill, resolve, depths, shortcut_resolve] {
             shader.check_layout::<Counters>().unwrap();
+        }
+        for shader in [fill, resolve] {
             shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
         }
     }
@@ -265,5 +277,48 @@ mod tests {
             let counts = [&*shade.kernel.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
+        for (k, ordered) in ShortCutDesc::K_RANGE.flat_map(|k| [(k, false), (k, true)]) {
+            let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
+            assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
+        }
+    }
+
+    #[test]
+    fn a_k_out_of_range_is_an_error_that_says_the_range() {
+        let mut backend = NullBackend::default();
+        let mut refused = |technique: Technique| {
+            let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique);
+            HairRenderer::new(&mut backend, &desc).unwrap_err().to_string()
+        };
+        for k in [0, 17] {
+            let said = format!("hair.render.ppll: k is {k}, it must be from 1 to 16");
+            assert_eq!(refused(PpllDesc::default().k(k).into()), said);
+        }
+        for k in [0, 9] {
+            let said = format!("hair.render.shortcut: k is {k}, it must be from 1 to 8");
+            assert_eq!(refused(ShortCutDesc::default().k(k).into()), said);
+        }
+    }
+
+    #[test]
+    fn a_technique_knows_what_it_takes() {
+        let techniques: [Technique; 3] = [
+            PpllDesc::default().into(),
+            ShortCutDesc::default().into(),
+            ShortCutDesc::default().ordered(true).k(8).into(),
+        ];
+        for technique in techniques {
+            for size in [[96, 64], [1, 1], [0, 7]] {
+                let mut backend = NullBackend::default();
+                let made = technique.make(&mut backend, size, Format::Rgba16F).unwrap();
+                assert_eq!(made.bytes(), backend.memory().bytes, "{technique:?} at {size:?}");
+            }
+        }
+        let mut backend = NullBackend::default();
+        let mut pool = Ppll::new(&mut backend, &PpllDesc::default(), [96, 64], Format::Rgba16F).unwrap();
+        pool.reserve(&mut backend, 100_000).unwrap();
+        pool.resize(&mut backend, [33, 20]).unwrap();
+        pool.reserve(&mut backend, 50_000).unwrap();
+        assert_eq!(pool.bytes(), backend.memory().bytes);
     }
 }

@@ -3,14 +3,16 @@
 use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, Owner};
 use tressfx_core::error::{Error, Result};
-use tressfx_core::id::BufferId;
+use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
 use crate::material::Material;
 use crate::uniforms::SectionUniform;
+use crate::views::BoundView;
 use crate::visibility;
 
 /// How many segments a prediction samples.
@@ -122,6 +124,18 @@ impl ShadedStrands {
         list.upload(visibility, 0, &info.visibility);
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         Ok(Self { buffers, info, uniform, visibility, colors, owner })
+    }
+
+    /// What the module `strands` of the shaders binds.
+    pub(crate) fn bindings(&self, view: &BoundView, scene_depth: TextureId) -> [(&'static str, Binding); 6] {
+        [
+            ("view", view.uniform),
+            ("section", self.uniform.into()),
+            ("positions", self.buffers.positions.into()),
+            ("colors", self.colors.into()),
+            ("thickness", self.buffers.thickness.into()),
+            ("scene_depth", scene_depth.into()),
+        ]
     }
 
     /// Colours as `hair.render.shade` leaves them: for tests and tools.

@@ -1,14 +1,16 @@
 //! Techniques: how fragments are sorted and blended. The interface between the renderer and a technique.
 
 use std::fmt::Debug;
+use std::ops::RangeInclusive;
 
 use tressfx_core::backend::{Backend, Format};
-use tressfx_core::error::Result;
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
+use crate::shortcut::{ShortCut, ShortCutDesc};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
@@ -18,6 +20,8 @@ use crate::views::BoundView;
 pub enum Technique {
     /// A list of fragments for each pixel, of which the nearest are sorted.
     Ppll(PpllDesc),
+    /// Layers of the nearest fragments of each pixel, in the same memory however much hair there is.
+    ShortCut(ShortCutDesc),
 }
 
 impl Default for Technique {
@@ -36,8 +40,11 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// Enlarges the pool to at least this many fragments, up to its limit.
     fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()>;
 
-    /// How many fragments the pool can hold.
+    /// How many fragments the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
+
+    /// Bytes of the buffers that it has made.
+    fn bytes(&self) -> u64;
 
     /// The buffer with the [`Counters`](crate::Counters) of each view, and where those of a view are.
     fn counters(&self, view: usize) -> (BufferId, u64);
@@ -49,6 +56,15 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()>;
 }
 
+/// Whether a technique takes `k` fragments of a pixel.
+pub(crate) fn check_k(label: Label, k: u32, range: &RangeInclusive<u32>) -> Result<()> {
+    if range.contains(&k) {
+        return Ok(());
+    }
+    let message = format!("k is {k}, it must be from {} to {}", range.start(), range.end());
+    Err(Error::rule(label, message))
+}
+
 impl Technique {
     pub(crate) fn make(
         &self,
@@ -58,6 +74,7 @@ impl Technique {
     ) -> Result<Box<dyn TechniqueInstance>> {
         match self {
             Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
+            Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, target)?)),
         }
     }
 }

@@ -7,6 +7,7 @@ use glam::Vec3;
 use tressfx_core::shader::Language;
 
 use crate::camera::Camera;
+use crate::oit::Oit;
 
 /// Hair and fur, simulated and rendered strand by strand on the GPU.
 #[derive(Debug, Parser)]
@@ -135,9 +136,8 @@ pub(crate) struct Render {
     /// `auto`, or EYE,TARGET,FOV: seven numbers, the last in degrees
     #[arg(long, default_value = "auto", value_parser = Camera::parse, allow_hyphen_values = true)]
     pub(crate) camera: Camera,
-    /// Fragments of a pixel that are sorted exactly
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub(crate) k: u32,
+    #[command(flatten)]
+    pub(crate) oit: Oit,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
@@ -175,9 +175,8 @@ pub(crate) struct Shaders {
     /// Follow strands of each guide; without it, as `render` has them
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
-    /// Fragments of a pixel that are sorted exactly
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub(crate) k: u32,
+    #[command(flatten)]
+    pub(crate) oit: Oit,
 }
 
 impl Shaders {

@@ -11,6 +11,7 @@ mod convert;
 mod groom;
 mod info;
 mod motion;
+mod oit;
 mod params;
 mod passes;
 mod picture;

@@ -12,7 +12,7 @@ use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
-use tressfx_render::{HairRenderer, PpllDesc, RenderDesc};
+use tressfx_render::{HairRenderer, RenderDesc};
 use tressfx_sim::{HairSim, SectionDesc};
 
 use crate::cli;
@@ -122,7 +122,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone());
     let sections = [section.clone(), section.with_own_roots()];
     HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
-    let technique = PpllDesc::default().k(args.k);
+    let technique = args.oit.technique()?;
     HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F).technique(technique))?;
     Ok(backend.shaders)
 }

@@ -56,7 +56,10 @@ pub(crate) struct RenderStats {
     /// That found no place in the node pool.
     pub(crate) dropped: u64,
     pub(crate) pixels_with_hair: u64,
+    /// Of all buffers and textures.
     pub(crate) peak_gpu_bytes: u64,
+    /// Of those, the ones in which the technique of `--oit` keeps fragments and pixels.
+    pub(crate) oit_bytes: u64,
 }
 
 impl Stats {

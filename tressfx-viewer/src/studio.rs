@@ -6,8 +6,7 @@ use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
-    ViewDraw,
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
 };
 use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
@@ -48,7 +47,7 @@ impl Studio {
             let section = ShadedStrands::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
             sections.push((section, *run.params.material(index)));
         }
-        let desc = RenderDesc::new(args.size, TARGET).technique(PpllDesc::default().k(args.k));
+        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth())?;
@@ -77,9 +76,11 @@ impl Studio {
             dropped: u64::from(counters.dropped),
             pixels_with_hair: u64::from(counters.pixels_with_hair),
             peak_gpu_bytes: 0,
+            oit_bytes: 0,
         };
         let before = self.renderer.capacity();
         self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
+        self.drawn.oit_bytes = self.renderer.technique_bytes();
         Ok(self.renderer.capacity() > before)
     }
 

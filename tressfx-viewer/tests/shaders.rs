@@ -19,8 +19,8 @@ const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
 const VARIANTS: [&[&str]; 4] = [
     &[],
-    &["builtin:fur:40:3", "--follow", "2", "--k", "1", "--params", "bare.toml"],
-    &["pinned.tfx", "--k", "16"],
+    &["builtin:fur:40:3", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
+    &["pinned.tfx", "--oit-k", "16"],
     &["pinned.tfx", "--params", "bare.toml"],
 ];
 

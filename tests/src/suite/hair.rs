@@ -186,7 +186,7 @@ fn material() -> Material {
 }
 
 fn picture_of(t: &Subject, order: DepthOrder) {
-    let mut screen = Screen::new(t.another(), |setup| (setup.technique.k, setup.camera.depth) = (16, order));
+    let mut screen = Screen::new(t.another(), |setup| (setup.ppll().k, setup.camera.depth) = (16, order));
     let groom = Groom::wavy(60, 12, 1, material());
     let exact = screen.exact(&[&groom]);
     let difference = screen.hair(&[&groom]).difference(&exact);

@@ -1,7 +1,7 @@
 // Strands become fragments in the lists of pixels, one thread a segment.
 
+import package::counters::Counters;
 import package::grid::{GROUP, thread_index};
-import package::node::Counters;
 import package::ribbon::Ribbon;
 import package::sink::{Sink, pool};
 import package::strands::{Paint, paint_of, ribbon_of, section};

@@ -1,20 +1,9 @@
 // Lists of fragments, one a pixel. A node is a key, red and green, blue and alpha, and the number of the next.
 
-import package::fragment::Fragment;
+import package::fragment::{Fragment, pack_color};
 
 // Nodes are numbered from 1, so that a cleared head is an empty list.
 const NOTHING: u32 = 0u;
-
-struct Counters {
-    // Fragments that passed the depth test.
-    fragments: atomic<u32>,
-    // Of those, the ones that found no room in the pool.
-    dropped: u32,
-    // Pixels with at least one fragment.
-    pixels_with_hair: atomic<u32>,
-    // 1 where counting has ended at the limit.
-    saturated: u32,
-}
 
 struct PoolUniform {
     // Fragments that there is room for.
@@ -33,14 +22,5 @@ fn depth_key(nearness: f32) -> u32 {
 }
 
 fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {
-    let blue = pack2x16float(vec2(fragment.color.b, 0.0));
-    return vec4(depth_key(fragment.nearness), pack2x16float(fragment.color.rg), blue | (fragment.alpha << 16u), next);
-}
-
-fn node_color(node: vec3<u32>) -> vec3<f32> {
-    return vec3(unpack2x16float(node.y), unpack2x16float(node.z & 0xffffu).x);
-}
-
-fn node_alpha(node: vec3<u32>) -> u32 {
-    return node.z >> 16u;
+    return vec4(depth_key(fragment.nearness), pack_color(fragment), next);
 }

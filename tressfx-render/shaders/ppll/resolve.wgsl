@@ -4,8 +4,10 @@
 // are sorted under a total order, and sums of integers know no order.
 
 import package::constants::K;
-import package::fragment::OPAQUE;
-import package::node::{Counters, NOTHING, PoolUniform, node_alpha, node_color};
+import package::counters::Counters;
+import package::fragment::{OPAQUE, packed_alpha, packed_color};
+import package::node::{NOTHING, PoolUniform};
+import package::sums::{FULL, average, optical_depth, transmittance_of, weighted};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -19,10 +21,8 @@ import package::view::ViewUniform;
 @group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
 
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
-// Sums stop here instead of starting again from zero: no summand is larger.
-const FULL: u32 = 0x7fffffffu;
-const COLOR_UNIT: f32 = 16384.0;
-const OPTICAL_UNIT: f32 = 16384.0;
+// The sums of a tail have room for 131 thousand white fragments.
+const UNIT: f32 = 16384.0;
 
 // What lies behind the K nearest.
 struct Tail {
@@ -39,26 +39,23 @@ fn is_before(a: vec3<u32>, b: vec3<u32>) -> bool {
 }
 
 fn add(tail: ptr<function, Tail>, node: vec3<u32>) {
-    let alpha = f32(node_alpha(node)) / OPAQUE;
-    let optical = u32(round(-log2(max(1.0 - alpha, 1.0 / 65536.0)) * OPTICAL_UNIT));
-    let color = vec3<u32>(round(min(node_color(node) * alpha, vec3(256.0)) * COLOR_UNIT));
-    (*tail).optical = min((*tail).optical + optical, FULL);
-    (*tail).weight = min((*tail).weight + node_alpha(node), FULL);
-    (*tail).color = min((*tail).color + color, vec3(FULL));
+    let alpha = packed_alpha(node.yz);
+    (*tail).optical = min((*tail).optical + optical_depth(alpha), FULL);
+    (*tail).weight = min((*tail).weight + alpha, FULL);
+    (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
 }
 
 fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
     var color = vec3(0.0);
     var transmittance = 1.0;
     for (var i = 0u; i < K; i++) {
-        let alpha = f32(node_alpha((*nearest)[i])) / OPAQUE;
-        color += transmittance * alpha * node_color((*nearest)[i]);
+        let alpha = f32(packed_alpha((*nearest)[i].yz)) / OPAQUE;
+        color += transmittance * alpha * packed_color((*nearest)[i].yz);
         transmittance *= 1.0 - alpha;
     }
     if tail.weight > 0u {
-        let average = vec3<f32>(tail.color) * (OPAQUE / COLOR_UNIT) / f32(tail.weight);
-        let behind = transmittance * exp2(-f32(tail.optical) / OPTICAL_UNIT);
-        color += (transmittance - behind) * average;
+        let behind = transmittance * transmittance_of(tail.optical);
+        color += (transmittance - behind) * average(tail.color, tail.weight, UNIT);
         transmittance = behind;
     }
     return vec4(color, 1.0 - transmittance);

@@ -9,3 +9,17 @@ struct Fragment {
 }
 
 const OPAQUE: f32 = 65535.0;
+
+// Red and green, blue and alpha: half floats, and alpha as it is.
+fn pack_color(fragment: Fragment) -> vec2<u32> {
+    let blue = pack2x16float(vec2(fragment.color.b, 0.0));
+    return vec2(pack2x16float(fragment.color.rg), blue | (fragment.alpha << 16u));
+}
+
+fn packed_color(packed: vec2<u32>) -> vec3<f32> {
+    return vec3(unpack2x16float(packed.x), unpack2x16float(packed.y & 0xffffu).x);
+}
+
+fn packed_alpha(packed: vec2<u32>) -> u32 {
+    return packed.y >> 16u;
+}

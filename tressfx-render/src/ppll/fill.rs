@@ -39,18 +39,13 @@ impl Fill {
     ) -> Result<()> {
         let strands = draw.strands;
         let bindings = self.bound.get((view.index, strands.colors, scene_depth), || {
-            self.kernel.bind(&[
-                ("view", view.uniform),
-                ("section", strands.uniform.into()),
-                ("positions", strands.buffers.positions.into()),
-                ("colors", strands.colors.into()),
-                ("thickness", strands.buffers.thickness.into()),
-                ("scene_depth", scene_depth.into()),
+            let own = [
                 ("pool", pool.uniform.into()),
                 ("heads", pool.heads.into()),
                 ("nodes", pool.nodes.into()),
-                ("counters", pool.counters[view.index].into()),
-            ])
+                ("counters", pool.counters.of(view.index).into()),
+            ];
+            self.kernel.bind(&[&strands.bindings(view, scene_depth)[..], &own].concat())
         })?;
         list.compute(&self.kernel, &bindings, Grid::for_threads(strands.buffers.shape.segments(), GROUP));
         Ok(())

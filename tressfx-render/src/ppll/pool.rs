@@ -1,31 +1,17 @@
 //! Memory of the lists of fragments, and what becomes of them.
 
 use tressfx_core::backend::{Backend, BufferDesc};
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::Result;
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
 use super::PpllDesc;
-use super::resolve::TILE;
-use crate::views::MAX_VIEWS;
+use crate::counters::ViewCounters;
+use crate::resolved::{pixels, storage};
 
 /// Bytes of a fragment: depth key, colour and alpha, next.
 pub(crate) const NODE_BYTES: u64 = 16;
-
-gpu_struct! {
-    /// What was drawn of a view.
-    pub struct Counters {
-        /// Fragments that passed the depth test. Where it is saturated, there were at least so many.
-        pub fragments: u32,
-        /// Of those, the ones that found no room in the pool and are missing in the picture.
-        pub dropped: u32,
-        /// Pixels with at least one fragment.
-        pub pixels_with_hair: u32,
-        /// 1 where there were more fragments than can be counted, else 0.
-        pub saturated: u32,
-    }
-}
 
 gpu_struct! {
     /// Limits of the pool.
@@ -41,30 +27,6 @@ gpu_struct! {
     }
 }
 
-impl Default for Counters {
-    /// Nothing.
-    fn default() -> Self {
-        bytemuck::Zeroable::zeroed()
-    }
-}
-
-impl Counters {
-    /// Size of the counters on the GPU.
-    pub(crate) const BYTES: u64 = size_of::<Self>() as u64;
-
-    /// From the bytes of a read-back.
-    ///
-    /// # Panics
-    /// If there are not 16 bytes.
-    pub fn from_bytes(bytes: &[u8]) -> Self {
-        bytemuck::pod_read_unaligned(bytes)
-    }
-}
-
-fn storage(backend: &mut dyn Backend, label: Label, bytes: u64) -> Result<BufferId> {
-    backend.create_buffer(&BufferDesc::storage(label, bytes.max(16)))
-}
-
 /// Lists of fragments, one a pixel.
 #[derive(Debug)]
 pub(crate) struct NodePool {
@@ -72,8 +34,8 @@ pub(crate) struct NodePool {
     pub(crate) heads: BufferId,
     /// `vec4<u32>` a fragment.
     pub(crate) nodes: BufferId,
-    /// [`Counters`] of each view.
-    pub(crate) counters: [BufferId; MAX_VIEWS],
+    /// What is counted of each view.
+    pub(crate) counters: ViewCounters,
     /// [`PoolUniform`].
     pub(crate) uniform: BufferId,
     /// How many fragments there is room for.
@@ -93,11 +55,7 @@ impl NodePool {
         let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
         let heads = storage(backend, "hair.render.heads", 4 * pixels)?;
-        let mut counters = Vec::new();
-        for _ in 0..MAX_VIEWS {
-            counters.push(storage(backend, "hair.render.counters", Counters::BYTES)?);
-        }
-        let counters = counters.try_into().expect("as many as there are views");
+        let counters = ViewCounters::new(backend)?;
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
@@ -127,7 +85,7 @@ impl NodePool {
             unused: 0,
         };
         list.upload(self.uniform, 0, &[uniform]);
-        self.counters[..views].iter().for_each(|&counters| list.clear(counters, 0, Counters::BYTES));
+        self.counters.clear(list, views);
     }
 
     /// Empties the lists of a view.
@@ -135,37 +93,14 @@ impl NodePool {
         list.clear(self.heads, 0, 4 * pixels(size));
     }
 
-    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        let rest = [self.heads, self.nodes, self.uniform];
-        self.counters.into_iter().chain(rest).for_each(|buffer| backend.destroy(buffer.into()));
-    }
-}
-
-/// Hair without what is behind it.
-#[derive(Debug)]
-pub(crate) struct Resolved {
-    /// `vec2<u32>` a pixel: four half floats, premultiplied colour and alpha. Only pixels of tiles with hair are written.
-    pub(crate) colors: BufferId,
-    /// `u32` a tile: how many of its pixels have hair.
-    pub(crate) tiles: BufferId,
-}
-
-impl Resolved {
-    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
-        let colors = storage(backend, "hair.render.resolved", 8 * pixels(size))?;
-        Ok(Self { colors, tiles: storage(backend, "hair.render.tiles", 4 * u64::from(tile_count(size)))? })
+    /// What it takes for `size` pixels.
+    pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
+        let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
+        (4 * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::BYTES
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        [self.colors, self.tiles].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        self.counters.destroy(backend);
+        [self.heads, self.nodes, self.uniform].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
-}
-
-fn pixels(size: [u32; 2]) -> u64 {
-    u64::from(size[0]) * u64::from(size[1])
-}
-
-/// Tiles that a picture of this size has.
-pub(crate) fn tile_count(size: [u32; 2]) -> u32 {
-    size[0].div_ceil(TILE) * size[1].div_ceil(TILE)
 }

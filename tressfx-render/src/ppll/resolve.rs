@@ -8,16 +8,14 @@ use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::{Kernel, Specialization};
 
 use super::LIBRARY;
-use super::pool::{NodePool, Resolved};
+use super::pool::NodePool;
 use crate::bound::Bound;
+use crate::resolved::{Resolved, TILE};
 use crate::shaders::compute;
 use crate::views::BoundView;
 
 /// Fragments of a pixel that may be sorted exactly.
 pub const K_RANGE: RangeInclusive<u32> = 1..=16;
-
-/// Pixels along the edge of a tile: a group of this kernel, and what `hair.render.composite` draws or leaves out.
-pub const TILE: u32 = 8;
 
 #[derive(Debug)]
 pub(crate) struct Resolve {
@@ -26,10 +24,7 @@ pub(crate) struct Resolve {
 }
 
 impl Resolve {
-    /// # Panics
-    /// If `k` is outside [`K_RANGE`].
     pub(crate) fn new(backend: &mut dyn Backend, k: u32) -> Result<Self> {
-        assert!(K_RANGE.contains(&k), "k is {k}, it must be in {K_RANGE:?}");
         let root = ("resolve", include_str!("../../shaders/ppll/resolve.wgsl"));
         let kernel = compute(backend, "hair.render.resolve", root, LIBRARY, &Specialization::new().constant("K", k))?;
         Ok(Self { kernel, bound: Bound::new() })
@@ -48,7 +43,7 @@ impl Resolve {
                 ("pool", pool.uniform.into()),
                 ("heads", pool.heads.into()),
                 ("nodes", pool.nodes.into()),
-                ("counters", pool.counters[view.index].into()),
+                ("counters", pool.counters.of(view.index).into()),
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
             ])

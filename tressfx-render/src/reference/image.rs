@@ -5,7 +5,7 @@ use tressfx_core::view::View;
 
 use super::fill::fill_projected;
 use super::projection::Projection;
-use super::{Fragment, Strands, resolve, shade};
+use super::{Fragment, Strands, resolve, shade, shortcut_colors, shortcut_depths, shortcut_resolve};
 use crate::lights::Lights;
 
 /// The picture with every fragment kept and put in order.
@@ -23,6 +23,22 @@ pub fn resolved(
 ) -> Vec<DVec4> {
     let mut lists = lists(view, lights, strands, scene, 1);
     lists.iter_mut().map(|list| resolve(list, k)).collect()
+}
+
+/// The picture from the `k` nearest fragments of each pixel, in order or as their mean, with the opacity of all.
+pub fn shortcut(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+    k: usize,
+    ordered: bool,
+) -> Vec<DVec4> {
+    let of_pixel = |fragments: &Vec<Fragment>| {
+        let layers = shortcut_depths(fragments, k);
+        shortcut_resolve(&shortcut_colors(fragments, &layers, k), &layers, ordered)
+    };
+    lists(view, lights, strands, scene, 1).iter().map(of_pixel).collect()
 }
 
 /// The exact picture from `factor` x `factor` samples a pixel: what it converges to is the truth about which strand hides

@@ -6,10 +6,9 @@ use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
 use tressfx_core::shader::{RasterPipeline, Specialization};
 
-use super::LIBRARY;
-use super::pool::{Resolved, tile_count};
 use crate::bound::Bound;
-use crate::shaders::shader;
+use crate::resolved::{Resolved, tile_count};
+use crate::shaders::{SHARED, shader};
 use crate::views::BoundView;
 
 const LABEL: &str = "hair.render.composite";
@@ -22,8 +21,8 @@ pub(crate) struct Composite {
 
 impl Composite {
     pub(crate) fn new(backend: &mut dyn Backend, target: Format) -> Result<Self> {
-        let root = ("composite", include_str!("../../shaders/ppll/composite.wgsl"));
-        let shader = shader(LABEL, root, LIBRARY, &Specialization::new())?;
+        let root = ("composite", include_str!("../shaders/composite.wgsl"));
+        let shader = shader(LABEL, root, &SHARED, &Specialization::new())?;
         let pipeline = backend.create_raster(&RasterDesc::new(shader).target(target, Blend::Over))?;
         Ok(Self { pipeline, bound: Bound::new() })
     }

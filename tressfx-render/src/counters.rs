@@ -1,0 +1,73 @@
+//! What is counted of a view.
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::gpu_struct;
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+
+use crate::resolved::storage;
+use crate::views::MAX_VIEWS;
+
+gpu_struct! {
+    /// What was drawn of a view.
+    pub struct Counters {
+        /// Fragments that passed the depth test. Where it is saturated, there were at least so many.
+        pub fragments: u32,
+        /// Of those, the ones that found no room in the pool and are missing in the picture.
+        pub dropped: u32,
+        /// Pixels with at least one fragment.
+        pub pixels_with_hair: u32,
+        /// 1 where there were more fragments than can be counted, else 0.
+        pub saturated: u32,
+    }
+}
+
+impl Default for Counters {
+    /// Nothing.
+    fn default() -> Self {
+        bytemuck::Zeroable::zeroed()
+    }
+}
+
+impl Counters {
+    /// Size of the counters on the GPU.
+    pub(crate) const BYTES: u64 = size_of::<Self>() as u64;
+
+    /// From the bytes of a read-back.
+    ///
+    /// # Panics
+    /// If there are not 16 bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Self {
+        bytemuck::pod_read_unaligned(bytes)
+    }
+}
+
+/// [`Counters`] of each view of a frame.
+#[derive(Debug)]
+pub(crate) struct ViewCounters([BufferId; MAX_VIEWS]);
+
+impl ViewCounters {
+    /// Size of all of them on the GPU.
+    pub(crate) const BYTES: u64 = MAX_VIEWS as u64 * Counters::BYTES;
+
+    pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
+        let made: Result<Vec<_>> =
+            (0..MAX_VIEWS).map(|_| storage(backend, "hair.render.counters", Counters::BYTES)).collect();
+        Ok(Self(made?.try_into().expect("as many as there are views")))
+    }
+
+    /// Those of a view.
+    pub(crate) fn of(&self, view: usize) -> BufferId {
+        self.0[view]
+    }
+
+    /// Sets those of the first views to zero.
+    pub(crate) fn clear(&self, list: &mut PassList, views: usize) {
+        self.0[..views].iter().for_each(|&counters| list.clear(counters, 0, Counters::BYTES));
+    }
+
+    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
+        self.0.into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}

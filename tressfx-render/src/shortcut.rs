@@ -1,0 +1,163 @@
+//! ShortCut, after TressFX 3 and 4: the depths of the nearest fragments of each pixel first, then their colours. It needs the
+//! same memory for each pixel, however much hair there is.
+//!
+//! What differs from the original: everything is compute, and sums are of integers, so that a picture does not depend on the
+//! order of atomics. The second walk reads the depth of the last layer from the layers; the original writes it to the depth
+//! buffer of the scene for the early test of the hardware, and later passes see hair there. Colours are cleared to zero and
+//! no sum is divided by zero. Fragments too faint for an alpha of 16 bits are left out, and no others.
+
+mod colors;
+mod depths;
+mod memory;
+mod resolve;
+
+use std::ops::RangeInclusive;
+
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::error::{Need, Result};
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::shader::Specialization;
+
+use crate::composite::Composite;
+use crate::renderer::Targets;
+use crate::resolved::{check_pixels, pixels};
+use crate::strands::SectionDraw;
+use crate::technique::{TechniqueInstance, check_k};
+use crate::views::BoundView;
+use memory::Memory;
+
+/// Layers of nearest fragments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ShortCutDesc {
+    /// How many of the nearest fragments of a pixel give it its colour; the others add to its opacity alone. In
+    /// [`ShortCutDesc::K_RANGE`].
+    pub k: u32,
+    /// Whether the nearest fragments are blended in order. Else the colour is their mean, weighted by alpha.
+    pub ordered: bool,
+}
+
+impl ShortCutDesc {
+    /// Fragments of a pixel that may give it its colour.
+    pub const K_RANGE: RangeInclusive<u32> = 1..=8;
+
+    /// The same with `k` layers.
+    #[must_use]
+    pub fn k(self, k: u32) -> Self {
+        Self { k, ..self }
+    }
+
+    /// The same with fragments in order, or their mean.
+    #[must_use]
+    pub fn ordered(self, ordered: bool) -> Self {
+        Self { ordered, ..self }
+    }
+
+    fn specialization(&self) -> Specialization {
+        Specialization::new().feature("ordered", self.ordered).constant("K", self.k)
+    }
+}
+
+impl Default for ShortCutDesc {
+    /// The mean of three layers.
+    fn default() -> Self {
+        Self { k: 3, ordered: false }
+    }
+}
+
+impl From<ShortCutDesc> for crate::Technique {
+    fn from(desc: ShortCutDesc) -> Self {
+        Self::ShortCut(desc)
+    }
+}
+
+/// Layers at work.
+#[derive(Debug)]
+pub(crate) struct ShortCut {
+    desc: ShortCutDesc,
+    depths: depths::Depths,
+    colors: colors::Colors,
+    resolve: resolve::Resolve,
+    composite: Composite,
+    memory: Memory,
+}
+
+impl ShortCut {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShortCutDesc, size: [u32; 2], target: Format) -> Result<Self> {
+        check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
+        check(backend, desc, size)?;
+        Ok(Self {
+            desc: *desc,
+            depths: depths::Depths::new(backend, desc)?,
+            colors: colors::Colors::new(backend, desc)?,
+            resolve: resolve::Resolve::new(backend, desc)?,
+            composite: Composite::new(backend, target)?,
+            memory: Memory::new(backend, size, desc)?,
+        })
+    }
+
+    #[cfg(test)]
+    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 4] {
+        let Self { depths, colors, resolve, composite, .. } = self;
+        [&depths.kernel.shader, &colors.kernel.shader, &resolve.kernel.shader, &composite.pipeline.shader]
+    }
+}
+
+impl TechniqueInstance for ShortCut {
+    fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
+        check(backend, &self.desc, size)?;
+        let memory = Memory::new(backend, size, &self.desc)?;
+        std::mem::replace(&mut self.memory, memory).destroy(backend);
+        self.depths.bound.clear();
+        self.colors.bound.clear();
+        self.resolve.bound.clear();
+        self.composite.bound.clear();
+        Ok(())
+    }
+
+    /// There is no pool.
+    fn reserve(&mut self, _: &mut dyn Backend, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn capacity(&self) -> u32 {
+        u32::MAX
+    }
+
+    fn bytes(&self) -> u64 {
+        self.memory.bytes
+    }
+
+    fn counters(&self, view: usize) -> (BufferId, u64) {
+        (self.memory.counters.of(view), 0)
+    }
+
+    fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
+        self.depths.bound.begin_frame();
+        self.colors.bound.begin_frame();
+        self.resolve.bound.begin_frame();
+        self.composite.bound.begin_frame();
+        self.memory.counters.clear(list, views);
+    }
+
+    fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
+        self.memory.clear(list, view.size, &self.desc);
+        for draw in draws {
+            self.depths.pass(list, view, draw, &self.memory, targets.depth)?;
+        }
+        for draw in draws {
+            self.colors.pass(list, view, draw, &self.memory, targets.depth)?;
+        }
+        self.resolve.pass(list, view, &self.memory)?;
+        self.composite.pass(list, view, &self.memory.resolved, targets.color)
+    }
+}
+
+/// Whether a device can draw hair on a screen of this size.
+fn check(backend: &dyn Backend, desc: &ShortCutDesc, size: [u32; 2]) -> Result<()> {
+    let largest = memory::bytes_of_pixel(desc).into_iter().max().unwrap_or(0) * pixels(size);
+    let needs = [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(largest)];
+    backend.caps().check("hair.render", &needs)?;
+    check_pixels(size)
+}

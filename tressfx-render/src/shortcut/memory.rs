@@ -1,0 +1,74 @@
+//! What ShortCut keeps for each pixel.
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
+
+use super::ShortCutDesc;
+use crate::counters::ViewCounters;
+use crate::resolved::{Resolved, pixels, storage};
+
+/// The buffers of ShortCut.
+#[derive(Debug)]
+pub(crate) struct Memory {
+    /// `u32` a layer of each pixel: the key of a depth, 0 for none.
+    pub(crate) layers: BufferId,
+    /// `u32` a pixel: the sum of the optical depths.
+    pub(crate) opticals: BufferId,
+    /// What the second pass leaves: `vec2<u32>` a layer of each pixel, a colour, where fragments are in order; else `vec2<u32>` a
+    /// pixel, the half of the sums that is not in `resolved`.
+    pub(crate) fronts: BufferId,
+    /// The result.
+    pub(crate) resolved: Resolved,
+    /// What is counted of each view.
+    pub(crate) counters: ViewCounters,
+    /// All of them together.
+    pub(crate) bytes: u64,
+}
+
+/// Bytes of a pixel in `layers`, `opticals`, `fronts` and `resolved`.
+pub(crate) fn bytes_of_pixel(desc: &ShortCutDesc) -> [u64; 4] {
+    let k = u64::from(desc.k);
+    [4 * k, 4, if desc.ordered { 8 * k } else { 8 }, Resolved::PIXEL_BYTES]
+}
+
+impl Memory {
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &ShortCutDesc) -> Result<Self> {
+        let [layers, opticals, fronts, _] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+        let name = if desc.ordered { "hair.render.slots" } else { "hair.render.sums" };
+        Ok(Self {
+            layers: storage(backend, "hair.render.layers", layers)?,
+            opticals: storage(backend, "hair.render.opticals", opticals)?,
+            fronts: storage(backend, name, fronts)?,
+            resolved: Resolved::new(backend, size)?,
+            counters: ViewCounters::new(backend)?,
+            bytes: [layers, opticals, fronts].map(|bytes| bytes.max(16)).iter().sum::<u64>()
+                + Resolved::bytes(size)
+                + ViewCounters::BYTES,
+        })
+    }
+
+    /// `fronts` by the name that it has in the shaders.
+    pub(crate) fn fronts(&self, desc: &ShortCutDesc) -> (&'static str, Binding) {
+        (if desc.ordered { "slots" } else { "sums" }, self.fronts.into())
+    }
+
+    /// Empties the pixels of a view.
+    pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], desc: &ShortCutDesc) {
+        let [layers, opticals, fronts, resolved] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+        list.clear(self.layers, 0, layers);
+        list.clear(self.opticals, 0, opticals);
+        list.clear(self.fronts, 0, fronts);
+        if !desc.ordered {
+            list.clear(self.resolved.colors, 0, resolved);
+        }
+    }
+
+    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
+        self.resolved.destroy(backend);
+        self.counters.destroy(backend);
+        [self.layers, self.opticals, self.fronts].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}

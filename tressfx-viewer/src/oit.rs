@@ -1,0 +1,56 @@
+//! How fragments of hair behind each other are sorted and blended: `--oit` and what belongs to it.
+
+use std::ops::RangeInclusive;
+
+use anyhow::{Result, bail};
+use clap::{Args, ValueEnum};
+use tressfx_render::{K_RANGE, PpllDesc, ShortCutDesc, Technique};
+
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Oit {
+    /// How fragments of hair behind each other are sorted and blended
+    #[arg(long, value_enum, default_value_t = OitName::Ppll)]
+    oit: OitName,
+    /// The nearest fragments of a pixel that are sorted; without it, the default of the technique
+    #[arg(long, value_name = "K")]
+    oit_k: Option<u32>,
+    /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
+    #[arg(long)]
+    oit_ordered: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OitName {
+    /// A list of fragments for each pixel (K from 1 to 16, 8 by default)
+    Ppll,
+    /// Layers of the nearest fragments of each pixel, in little memory (K from 1 to 8, 3 by default)
+    Shortcut,
+}
+
+impl Oit {
+    /// The technique that was asked for.
+    pub(crate) fn technique(&self) -> Result<Technique> {
+        if self.oit_ordered && self.oit != OitName::Shortcut {
+            bail!("--oit-ordered belongs to --oit shortcut");
+        }
+        match self.oit {
+            OitName::Ppll => {
+                let desc = PpllDesc::default();
+                Ok(desc.k(self.k(desc.k, &K_RANGE)?).into())
+            }
+            OitName::Shortcut => {
+                let desc = ShortCutDesc::default();
+                let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
+                Ok(desc.k(k).ordered(self.oit_ordered).into())
+            }
+        }
+    }
+
+    fn k(&self, default: u32, range: &RangeInclusive<u32>) -> Result<u32> {
+        let k = self.oit_k.unwrap_or(default);
+        if !range.contains(&k) {
+            bail!("--oit-k {k}: it must be from {} to {}", range.start(), range.end());
+        }
+        Ok(k)
+    }
+}
