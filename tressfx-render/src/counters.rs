@@ -14,12 +14,15 @@ gpu_struct! {
     pub struct Counters {
         /// Fragments that passed the depth test. Where it is saturated, there were at least so many.
         pub fragments: u32,
-        /// Of those, the ones that found no room in the pool and are missing in the picture.
+        /// What found no room in the pool and is missing in the picture: fragments, or references of tiles to segments.
         pub dropped: u32,
         /// Pixels with at least one fragment.
         pub pixels_with_hair: u32,
         /// 1 where there were more fragments than can be counted, else 0.
         pub saturated: u32,
+        /// What the technique wanted to keep: the fragments where it has lists of them, the references to segments where it has
+        /// tiles, else 0.
+        pub wanted: u32,
     }
 }
 
@@ -37,7 +40,7 @@ impl Counters {
     /// From the bytes of a read-back.
     ///
     /// # Panics
-    /// If there are not 16 bytes.
+    /// If there are not 20 bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }

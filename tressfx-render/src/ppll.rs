@@ -9,8 +9,10 @@ use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Module;
+use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::shaders::{GROUP, with_shared};
@@ -24,7 +26,7 @@ pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 12>([
+const LIBRARY: &[Module] = &with_shared::<2, 14>([
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
@@ -128,6 +130,10 @@ impl TechniqueInstance for Ppll {
         self.size = size;
         self.forget_bindings();
         Ok(())
+    }
+
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
+        predict::fragments(view, draws)
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {

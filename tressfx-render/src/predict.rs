@@ -3,11 +3,23 @@
 use glam::{Mat4, Vec2, Vec3};
 use tressfx_core::view::View;
 
+use crate::resolved::TILE;
 use crate::strands::SectionDraw;
+
+/// Slices of depth that a segment touches within a tile, in the mean and generously.
+const SLICES_OF_A_TILE: f64 = 1.5;
 
 /// Fragments that a view of sections makes, from the samples of their rest poses, what is hidden behind meshes included.
 pub(crate) fn fragments(view: &View, draws: &[SectionDraw]) -> f64 {
     draws.iter().filter(|draw| !draw.strands.info.sample.is_empty()).map(|draw| of_section(view, draw)).sum()
+}
+
+/// References of tiles to segments that a view of sections makes, from the same samples.
+pub(crate) fn references(view: &View, draws: &[SectionDraw]) -> f64 {
+    let tile = f64::from(TILE);
+    let segments: u32 = draws.iter().map(|draw| draw.strands.buffers.shape.segments()).sum();
+    // A segment crosses an edge between tiles every TILE pixels along either axis, and it is in several slices here and there.
+    SLICES_OF_A_TILE * (f64::from(segments) + 2.0 * fragments(view, draws) / tile)
 }
 
 fn of_section(view: &View, draw: &SectionDraw) -> f64 {

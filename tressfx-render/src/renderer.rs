@@ -8,7 +8,6 @@ use tressfx_core::view::{PoseError, View};
 
 use crate::counters::Counters;
 use crate::lights::MAX_LIGHTS;
-use crate::predict;
 use crate::shade::Shade;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance};
@@ -18,7 +17,7 @@ use crate::views::{MAX_VIEWS, ViewDraw, Views};
 const HEADROOM: f64 = 1.25;
 
 /// Describes a renderer that is to be made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RenderDesc {
     /// Width and height in pixels of the largest view.
@@ -123,7 +122,8 @@ impl HairRenderer {
         self.order.bytes()
     }
 
-    /// How many fragments the pool can hold at present; all that can be counted where the technique has none.
+    /// How many fragments the pool can hold at present, or references where the technique has tiles; all that can be counted
+    /// where it has none.
     pub fn capacity(&self) -> u32 {
         self.order.capacity()
     }
@@ -139,8 +139,8 @@ impl HairRenderer {
         Ok(())
     }
 
-    /// Enlarges the pool to what a view is predicted to need. Call it for each view, before the first frame and whenever the
-    /// camera jumps.
+    /// Enlarges the pool to what a view is predicted to need. Call it for each view, before the first frame, whenever the camera
+    /// jumps, and whenever sections come: tiles draw no more vertices than there is room for.
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size; the pool is unchanged then.
@@ -148,8 +148,12 @@ impl HairRenderer {
         if view.is_empty() {
             return Ok(());
         }
-        let wanted = (predict::fragments(view, draws) * HEADROOM) as u64;
-        self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
+        let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
+        let wanted = (self.order.predicted(view, &draws) * HEADROOM) as u64;
+        self.owner.change(backend, |backend| {
+            self.order.reserve_vertices(backend, &draws)?;
+            self.order.reserve(backend, wanted)
+        })
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
@@ -158,10 +162,10 @@ impl HairRenderer {
     /// # Errors
     /// As [`HairRenderer::grow_to_predicted`].
     pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
-        if counters.fragments <= self.capacity() {
+        if counters.wanted <= self.capacity() {
             return Ok(());
         }
-        let wanted = (f64::from(counters.fragments) * HEADROOM) as u64;
+        let wanted = (f64::from(counters.wanted) * HEADROOM) as u64;
         self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
     }
 

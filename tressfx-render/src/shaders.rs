@@ -13,13 +13,15 @@ pub(crate) const GROUP: u32 = 64;
 pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wgsl"));
 
 /// What all kernels may import. `walk` asks for a module `sink`, which is the technique's.
-pub(crate) const SHARED: [Module; 10] = [
+pub(crate) const SHARED: [Module; 12] = [
     VIEW_MODULE,
     ("counters", include_str!("../shaders/shared/counters.wgsl")),
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
     ("fragment", include_str!("../shaders/shared/fragment.wgsl")),
     ("lighting", include_str!("../shaders/shared/lighting.wgsl")),
+    ("line", include_str!("../shaders/shared/line.wgsl")),
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
+    ("screen", include_str!("../shaders/shared/screen.wgsl")),
     ("section", include_str!("../shaders/shared/section.wgsl")),
     ("strands", include_str!("../shaders/shared/strands.wgsl")),
     ("sums", include_str!("../shaders/shared/sums.wgsl")),

@@ -18,6 +18,7 @@ use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Specialization;
+use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::renderer::Targets;
@@ -117,6 +118,10 @@ impl TechniqueInstance for ShortCut {
     }
 
     /// There is no pool.
+    fn predicted(&self, _: &View, _: &[SectionDraw]) -> f64 {
+        0.0
+    }
+
     fn reserve(&mut self, _: &mut dyn Backend, _: u64) -> Result<()> {
         Ok(())
     }

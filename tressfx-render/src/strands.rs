@@ -79,6 +79,15 @@ fn fitting_radius(strands: &Strands) -> f32 {
     radius.clamp(MIN_FITTING_RADIUS, MAX_FITTING_RADIUS) as f32
 }
 
+/// The middle of the samples' bounds, and the distance of the sample that is farthest from it.
+fn sphere(info: &StrandInfo) -> (Vec3, f32) {
+    let points = || info.sample.iter().flat_map(|(ends, _)| ends).copied().filter(|point| point.is_finite());
+    let Some(low) = points().reduce(Vec3::min) else { return (Vec3::ZERO, 0.0) };
+    let high = points().fold(low, Vec3::max);
+    let middle = low.midpoint(high);
+    (middle, points().map(|point| point.distance(middle)).fold(0.0, f32::max))
+}
+
 /// The strands of a section with what shading needs, and the colours that it gives them.
 #[derive(Debug)]
 pub struct ShadedStrands {
@@ -90,6 +99,8 @@ pub struct ShadedStrands {
     pub(crate) visibility: BufferId,
     /// `vec2<u32>` a vertex of every strand: four half floats, colour and opacity.
     pub(crate) colors: BufferId,
+    /// A point and a distance from it within which the samples of the rest pose lie, about the centre of the buffers.
+    pub(crate) sphere: (Vec3, f32),
     owner: Owner,
 }
 
@@ -123,7 +134,8 @@ impl ShadedStrands {
         let ([uniform, visibility, colors], owner) = made?;
         list.upload(visibility, 0, &info.visibility);
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
-        Ok(Self { buffers, info, uniform, visibility, colors, owner })
+        let sphere = sphere(&info);
+        Ok(Self { buffers, info, uniform, visibility, colors, sphere, owner })
     }
 
     /// What the module `strands` of the shaders binds.

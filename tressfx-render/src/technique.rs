@@ -7,21 +7,25 @@ use tressfx_core::backend::{Backend, Format};
 use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
+use tressfx_core::view::View;
 
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
 use crate::shortcut::{ShortCut, ShortCutDesc};
+use crate::tiles::{Tiles, TilesDesc};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
 /// How fragments of hair behind each other are sorted and blended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Technique {
     /// A list of fragments for each pixel, of which the nearest are sorted.
     Ppll(PpllDesc),
     /// Layers of the nearest fragments of each pixel, in the same memory however much hair there is.
     ShortCut(ShortCutDesc),
+    /// All fragments of each pixel in order, in tiles, until nothing more is seen.
+    Tiles(TilesDesc),
 }
 
 impl Default for Technique {
@@ -37,10 +41,18 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// Makes the buffers whose size depends on that of the view again.
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()>;
 
-    /// Enlarges the pool to at least this many fragments, up to its limit.
-    fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()>;
+    /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
 
-    /// How many fragments the pool can hold; all that can be counted where there is none.
+    /// Enlarges the pool to at least this much, up to its limit.
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()>;
+
+    /// Makes room for the vertices of sections, where the technique keeps any.
+    fn reserve_vertices(&mut self, _: &mut dyn Backend, _: &[SectionDraw]) -> Result<()> {
+        Ok(())
+    }
+
+    /// How much the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
 
     /// Bytes of the buffers that it has made.
@@ -74,6 +86,7 @@ impl Technique {
     ) -> Result<Box<dyn TechniqueInstance>> {
         match self {
             Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
+            Self::Tiles(desc) => Ok(Box::new(Tiles::new(backend, desc, size, target)?)),
             Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, target)?)),
         }
     }

@@ -35,13 +35,14 @@ impl<'a> ViewDraw<'a> {
 
 /// A view as passes bind it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BoundView {
+pub(crate) struct BoundView<'a> {
     /// Which view of the frame it is.
     pub(crate) index: usize,
     /// [`ViewUniform`].
     pub(crate) uniform: Binding,
     /// Pixels of the viewport.
     pub(crate) size: [u32; 2],
+    pub(crate) view: &'a View,
 }
 
 /// [`ViewUniform`] of each view.
@@ -59,7 +60,7 @@ impl Views {
         self.0.upload(list, 0, &uniforms);
     }
 
-    pub(crate) fn bound(&self, index: usize, view: &View) -> BoundView {
-        BoundView { index, uniform: self.0.binding(index), size: view.size() }
+    pub(crate) fn bound<'a>(&self, index: usize, view: &'a View) -> BoundView<'a> {
+        BoundView { index, uniform: self.0.binding(index), size: view.size(), view }
     }
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{K_RANGE, PpllDesc, ShortCutDesc, Technique};
+use tressfx_render::{K_RANGE, PpllDesc, ShortCutDesc, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -25,6 +25,8 @@ enum OitName {
     Ppll,
     /// Layers of the nearest fragments of each pixel, in little memory (K from 1 to 8, 3 by default)
     Shortcut,
+    /// All fragments of each pixel in order, until nothing more is seen
+    Tiles,
 }
 
 impl Oit {
@@ -43,6 +45,8 @@ impl Oit {
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
                 Ok(desc.k(k).ordered(self.oit_ordered).into())
             }
+            OitName::Tiles if self.oit_k.is_some() => bail!("--oit-k belongs to --oit ppll and --oit shortcut"),
+            OitName::Tiles => Ok(TilesDesc::default().into()),
         }
     }
 

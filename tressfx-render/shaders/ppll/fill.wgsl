@@ -2,9 +2,10 @@
 
 import package::counters::Counters;
 import package::grid::{GROUP, thread_index};
+import package::line::Paint;
 import package::ribbon::Ribbon;
 import package::sink::{Sink, pool};
-import package::strands::{Paint, paint_of, ribbon_of, section};
+import package::strands::{paint_of, ribbon_of, section};
 import package::walk::walk;
 
 @group(0) @binding(9) var<storage, read_write> counters: Counters;

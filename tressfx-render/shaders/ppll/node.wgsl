@@ -1,6 +1,6 @@
 // Lists of fragments, one a pixel. A node is a key, red and green, blue and alpha, and the number of the next.
 
-import package::fragment::{Fragment, pack_color};
+import package::fragment::{Fragment, depth_key, pack_color};
 
 // Nodes are numbered from 1, so that a cleared head is an empty list.
 const NOTHING: u32 = 0u;
@@ -14,11 +14,6 @@ struct PoolUniform {
     // limit then, so that the counter stays below 2 * limit whatever happens, and never wraps.
     small_request: u32,
     unused: u32,
-}
-
-// Smaller is nearer. `nearness` is not negative, so that its bits are in its order.
-fn depth_key(nearness: f32) -> u32 {
-    return ~bitcast<u32>(nearness);
 }
 
 fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {

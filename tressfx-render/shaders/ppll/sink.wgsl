@@ -2,7 +2,7 @@
 
 import package::fragment::Fragment;
 import package::node::{PoolUniform, pack_node};
-import package::strands::view;
+import package::screen::view;
 
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;

@@ -3,10 +3,12 @@
 struct Counters {
     // Fragments that passed the depth test.
     fragments: atomic<u32>,
-    // Of those, the ones that found no room in the pool.
+    // What found no room: fragments, or references.
     dropped: u32,
     // Pixels with at least one fragment.
     pixels_with_hair: atomic<u32>,
     // 1 where counting has ended at the limit.
     saturated: u32,
+    // What was to be kept: fragments, or references.
+    wanted: u32,
 }

@@ -10,6 +10,11 @@ struct Fragment {
 
 const OPAQUE: f32 = 65535.0;
 
+// Smaller is nearer. `nearness` is not negative, so that its bits are in its order.
+fn depth_key(nearness: f32) -> u32 {
+    return ~bitcast<u32>(nearness);
+}
+
 // Red and green, blue and alpha: half floats, and alpha as it is.
 fn pack_color(fragment: Fragment) -> vec2<u32> {
     let blue = pack2x16float(vec2(fragment.color.b, 0.0));

@@ -1,21 +1,14 @@
 // The strands of a section before the lens of a view: what every technique that walks over them is given.
 
+import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, project};
+import package::screen::view;
 import package::section::SectionUniform;
-import package::view::ViewUniform;
 
-@group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> colors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> thickness: array<f32>;
-@group(0) @binding(5) var scene_depth: texture_depth_2d;
-
-// Colour and opacity at the ends of a segment.
-struct Paint {
-    start: vec4<f32>,
-    end: vec4<f32>,
-}
 
 fn end_at(strand: u32, vertex: u32) -> End {
     let world = section.pose * vec4(positions[vertex * section.strands + strand].xyz, 1.0);

@@ -3,7 +3,7 @@
 import package::constants::K;
 import package::fragment::Fragment;
 import package::layers::layer_key;
-import package::strands::view;
+import package::screen::view;
 
 @if(ordered)
 import package::fragment::pack_color;

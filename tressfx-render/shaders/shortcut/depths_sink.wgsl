@@ -3,7 +3,7 @@
 import package::constants::K;
 import package::fragment::{Fragment, OPAQUE};
 import package::layers::layer_key;
-import package::strands::view;
+import package::screen::view;
 import package::sums::optical_depth;
 
 // K a pixel.

@@ -13,7 +13,7 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<2, 12>([
+const LIBRARY: &[Module] = &with_shared::<2, 14>([
     ("layers", include_str!("../../shaders/shortcut/layers.wgsl")),
     ("sink", include_str!("../../shaders/shortcut/depths_sink.wgsl")),
 ]);

@@ -1,0 +1,98 @@
+// Segments are referred to from the slices of the tiles that they touch. It runs twice: to count the references of each bin,
+// and, once each bin has its place, to store them. Both are the same code, compiled once, so that a compiler cannot round them
+// differently: a bin gets exactly what was counted for it. One thread a segment.
+
+import package::grid::{GROUP, thread_index};
+import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
+import package::ribbon::Ribbon;
+import package::screen::view;
+import package::segments::{Segment, ribbon_of, segment_at, tiles};
+import package::tiles::{TILE, distance_of, slice_of, tile_columns, tile_count};
+
+// Nearness of the scene, a tile.
+@group(0) @binding(6) var<storage, read> depths: array<f32>;
+// A slice after the other: a number a tile. References while they are counted, then the place of the next one.
+@group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
+// The first vertex of a segment.
+@group(0) @binding(8) var<storage, read_write> references: array<u32>;
+
+// Pixels, and share of a distance, by which a part of a ribbon is taken larger than it is: more than rounding can move a
+// fragment.
+const PIXEL_MARGIN: f32 = 0.02;
+const DISTANCE_MARGIN: f32 = 4e-6;
+
+fn refer(bin: u32, vertex: u32) {
+    if tiles.stores == 0u {
+        atomicAdd(&bins[bin], 1u);
+        return;
+    }
+    let place = atomicAdd(&bins[bin], 1u);
+    if place < tiles.capacity {
+        references[place] = vertex;
+    }
+}
+
+// Nearness of the farthest and of the nearest fragment that a ribbon may leave in columns.
+fn range_of(ribbon: Ribbon, line: Line, span: Span, columns: vec2<i32>) -> vec2<f32> {
+    let along = select(line.delta, line.delta.yx, span.steep);
+    // How far along the ribbon the pixels of a column are that lie beside its middle.
+    let beside = (span.half_height + PIXEL_MARGIN) * abs(along.y) / line.square + PIXEL_MARGIN / abs(along.x);
+    let at = (vec2<f32>(columns) + 0.5 - span.start.x) / along.x;
+    let part = clamp(vec2(min(at.x, at.y) - beside, max(at.x, at.y) + beside), vec2(0.0), vec2(1.0));
+    let ends = mix(ribbon.nearness.xx, ribbon.nearness.yy, part);
+    return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
+}
+
+// The slices from nearest to farthest, a little more than there are.
+fn slices_of(nearness: vec2<f32>) -> vec2<u32> {
+    let distance = vec2(distance_of(nearness.y), distance_of(nearness.x));
+    var margin = DISTANCE_MARGIN * distance;
+    if view.lens.is_perspective == 0u {
+        margin = vec2(DISTANCE_MARGIN / view.lens.nearness_slope);
+    }
+    return vec2(slice_of(tiles, distance.x - margin.x), slice_of(tiles, distance.y + margin.y));
+}
+
+fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
+    let edge = i32(TILE);
+    let columns = vec2(max(span.first_column, tile_column * edge), min(span.last_column, tile_column * edge + edge - 1));
+    let middles = vec2(middle_of(span, columns.x), middle_of(span, columns.y));
+    let reach = span.half_height + PIXEL_MARGIN;
+    let first_row = max(i32(ceil(min(middles.x, middles.y) - reach)), 0);
+    let last_row = min(i32(floor(max(middles.x, middles.y) + reach)), span.size.y - 1);
+    if first_row > last_row {
+        return;
+    }
+    let nearness = range_of(ribbon, line, span, columns);
+    let slices = slices_of(nearness);
+    for (var row = first_row / edge; row <= last_row / edge; row++) {
+        let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
+        let tile = place.y * tile_columns() + place.x;
+        if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
+            continue;
+        }
+        for (var slice = slices.x; slice <= slices.y; slice++) {
+            refer(slice * tile_count() + tile, vertex);
+        }
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+            @builtin(local_invocation_index) lane: u32) {
+    let i = thread_index(group, groups, lane);
+    if i >= tiles.segments {
+        return;
+    }
+    let segment = segment_at(i);
+    let ribbon = ribbon_of(segment);
+    let line = line_of(ribbon);
+    if !is_drawn(ribbon, line) {
+        return;
+    }
+    let span = span_of(ribbon, line);
+    let edge = i32(TILE);
+    for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
+        bin_column(ribbon, line, span, column, segment.start);
+    }
+}

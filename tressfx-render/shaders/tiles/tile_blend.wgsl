@@ -1,0 +1,336 @@
+// The pixels of a tile, from front to back. A group takes one tile after the other, the heaviest first, and goes through its
+// slices in units: as many slices as should fill the list of fragments. The fragments of a unit are sorted by pixel and depth,
+// and blended; pixels that have become opaque take no more; the tile ends when all are closed.
+//
+// A fragment belongs to the slice of its own depth, so that a segment that is referred to from several slices leaves each
+// fragment once. A unit with too many fragments blends nothing and is tried again with half of its slices, or half of the
+// depths of its slice. Where fragments of one and the same depth are too many, their order means nothing: they are blended as
+// their mean.
+
+import package::counters::Counters;
+import package::fragment::{Fragment, OPAQUE, depth_key, pack_color, packed_alpha, packed_color};
+import package::line::{fragment_at, is_drawn, line_of, middle_of, span_of};
+import package::screen::view;
+import package::segments::{paint_of, ribbon_of, segment_from, tiles};
+import package::sums::{average, optical_depth, transmittance_of, weighted};
+import package::tiles::{CLASSES, Queue, SLICES, TILE, distance_of, slice_of, tile_columns, tile_count};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
+
+@group(0) @binding(4) var<storage, read_write> counters: Counters;
+// The end of each slice of each tile, a slice after the other.
+@group(0) @binding(6) var<storage, read> bins: array<u32>;
+@group(0) @binding(7) var<storage, read_write> queue: Queue;
+@group(0) @binding(8) var<storage, read> references: array<u32>;
+// Premultiplied colour and alpha as four half floats, a pixel.
+@group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
+// Pixels with hair, a tile.
+@group(0) @binding(10) var<storage, read_write> hairy: array<u32>;
+
+const LANES: u32 = 256u;
+// Lanes that share a segment: each has every second column of its pixels.
+const SHARE: u32 = 2u;
+const PIXELS: u32 = TILE * TILE;
+const NO_TILE: u32 = 0xffffffffu;
+// Fragments of a lane.
+const OWN: u32 = (ENTRIES + LANES - 1u) / LANES;
+// The sums of a mean have room for this many white fragments of a pixel.
+const MOST_IN_MEAN: u32 = 16384u;
+const MEAN_UNIT: f32 = 256.0;
+
+// Tile and first reference.
+var<workgroup> job: vec2<u32>;
+var<workgroup> plan: Unit;
+// Fragments that were found in the unit, whether or not there was room for them.
+var<workgroup> total: atomic<u32>;
+var<workgroup> keys: array<u32, ENTRIES>;
+var<workgroup> colors: array<vec2<u32>, ENTRIES>;
+// Pixel and place among the fragments of the pixel; then, in order, the fragments.
+var<workgroup> places: array<u32, ENTRIES>;
+// Fragments by pixel.
+var<workgroup> grouped: array<u32, ENTRIES>;
+var<workgroup> counts: array<atomic<u32>, PIXELS>;
+var<workgroup> starts: array<u32, PIXELS>;
+// Optical depth, weight and colour of a mean; a pixel.
+var<workgroup> sums: array<array<atomic<u32>, 5>, PIXELS>;
+// A bit a pixel that takes no more.
+var<workgroup> closed: array<atomic<u32>, 2>;
+var<workgroup> hairy_pixels: atomic<u32>;
+
+// What lies before the hair that comes next.
+struct Front {
+    color: vec3<f32>,
+    transmittance: f32,
+}
+
+fn take_tile() -> vec2<u32> {
+    var rest = atomicAdd(&queue.taken, 1u);
+    if rest == 0u {
+        counters.wanted = atomicLoad(&queue.references);
+        counters.dropped = max(counters.wanted, tiles.capacity) - tiles.capacity;
+    }
+    for (var i = CLASSES; i > 0u; i--) {
+        let size = atomicLoad(&queue.sizes[i - 1u]);
+        if rest < size {
+            return queue.tiles[(i - 1u) * tile_count() + rest];
+        }
+        rest -= size;
+    }
+    return vec2(NO_TILE, 0u);
+}
+
+// The slice that a reference belongs to, of those of a unit.
+fn slice_at(reference: u32, unit: Unit) -> u32 {
+    var slice = unit.first;
+    var end = unit.end;
+    while end - slice > 1u {
+        let middle = (slice + end) / 2u;
+        if bounds[middle] <= reference {
+            slice = middle;
+        } else {
+            end = middle;
+        }
+    }
+    return slice;
+}
+
+fn add_to_mean(pixel: u32, fragment: Fragment) {
+    if atomicAdd(&counts[pixel], 1u) >= MOST_IN_MEAN {
+        return;
+    }
+    let color = weighted(fragment.color, fragment.alpha, MEAN_UNIT);
+    atomicAdd(&sums[pixel][0], optical_depth(fragment.alpha) / 8u);
+    atomicAdd(&sums[pixel][1], fragment.alpha);
+    atomicAdd(&sums[pixel][2], color.x);
+    atomicAdd(&sums[pixel][3], color.y);
+    atomicAdd(&sums[pixel][4], color.z);
+}
+
+fn keep(unit: Unit, slice: u32, pixel: u32, fragment: Fragment) {
+    let key = min(depth_key(fragment.nearness), LAST_KEY - 1u);
+    if key < unit.low || key >= unit.high || slice_of(tiles, distance_of(fragment.nearness)) != slice {
+        return;
+    }
+    let entry = atomicAdd(&total, 1u);
+    if unit.is_mean == 1u {
+        add_to_mean(pixel, fragment);
+    } else if entry < ENTRIES {
+        keys[entry] = key;
+        colors[entry] = pack_color(fragment);
+        places[entry] = (pixel << 16u) | atomicAdd(&counts[pixel], 1u);
+    }
+}
+
+// What a reference leaves in the tile whose first pixel is `corner`; one column of SHARE.
+fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
+    let segment = segment_from(references[reference]);
+    let ribbon = ribbon_of(segment);
+    let line = line_of(ribbon);
+    if !is_drawn(ribbon, line) {
+        return;
+    }
+    let slice = slice_at(reference, unit);
+    let paint = paint_of(segment);
+    let span = span_of(ribbon, line);
+    let first = select(vec2<i32>(corner), vec2<i32>(corner.yx), span.steep);
+    let last = min(first + i32(TILE) - 1, span.size - 1);
+    let last_column = min(span.last_column, last.x);
+    for (var column = max(span.first_column, first.x) + i32(share); column <= last_column; column += i32(SHARE)) {
+        let middle = middle_of(span, column);
+        let last_row = min(i32(floor(middle + span.half_height)), last.y);
+        for (var row = max(i32(ceil(middle - span.half_height)), first.y); row <= last_row; row++) {
+            let pixel = vec2<u32>(select(vec2(column, row), vec2(row, column), span.steep));
+            let own = (pixel.y - corner.y) * TILE + pixel.x - corner.x;
+            if (atomicLoad(&closed[own / 32u]) & (1u << (own % 32u))) != 0u {
+                continue;
+            }
+            let fragment = fragment_at(ribbon, line, paint, pixel);
+            if fragment.alpha > 0u {
+                keep(unit, slice, own, fragment);
+            }
+        }
+    }
+}
+
+// A total order: what is the same in it gives the same picture in any order.
+fn is_before(a: u32, b: u32) -> bool {
+    if keys[a] != keys[b] {
+        return keys[a] < keys[b];
+    }
+    if any(colors[a] != colors[b]) {
+        return colors[a].x < colors[b].x || (colors[a].x == colors[b].x && colors[a].y < colors[b].y);
+    }
+    return a < b;
+}
+
+// Where a fragment comes among all of the unit, by pixel and depth.
+fn rank_of(entry: u32) -> u32 {
+    let pixel = places[entry] >> 16u;
+    var rank = starts[pixel];
+    for (var i = starts[pixel]; i < starts[pixel] + atomicLoad(&counts[pixel]); i++) {
+        rank += u32(is_before(grouped[i], entry));
+    }
+    return rank;
+}
+
+// Leaves the fragments of the unit in `places`, in order. All lanes come here.
+fn sort(count: u32, lane: u32) {
+    if lane < PIXELS {
+        var sum = 0u;
+        for (var i = 0u; i < lane; i++) {
+            sum += atomicLoad(&counts[i]);
+        }
+        starts[lane] = sum;
+    }
+    workgroupBarrier();
+    for (var i = lane; i < count; i += LANES) {
+        grouped[starts[places[i] >> 16u] + (places[i] & 0xffffu)] = i;
+    }
+    workgroupBarrier();
+    var ranks: array<u32, OWN>;
+    for (var i = 0u; i < OWN; i++) {
+        if lane + i * LANES < count {
+            ranks[i] = rank_of(lane + i * LANES);
+        }
+    }
+    workgroupBarrier();
+    for (var i = 0u; i < OWN; i++) {
+        if lane + i * LANES < count {
+            places[ranks[i]] = lane + i * LANES;
+        }
+    }
+    workgroupBarrier();
+}
+
+fn over(front: Front, color: vec3<f32>, alpha: f32) -> Front {
+    return Front(front.color + front.transmittance * alpha * color, front.transmittance * (1.0 - alpha));
+}
+
+// The sorted fragments of a pixel behind what lies before them.
+fn blend_sorted(front: Front, pixel: u32) -> Front {
+    var blended = front;
+    let end = starts[pixel] + atomicLoad(&counts[pixel]);
+    for (var i = starts[pixel]; i < end && blended.transmittance >= tiles.closed_below; i++) {
+        let color = colors[places[i]];
+        blended = over(blended, packed_color(color), f32(packed_alpha(color)) / OPAQUE);
+    }
+    return blended;
+}
+
+fn blend_mean(front: Front, pixel: u32) -> Front {
+    let weight = atomicLoad(&sums[pixel][1]);
+    var blended = front;
+    if weight > 0u {
+        let color = vec3(atomicLoad(&sums[pixel][2]), atomicLoad(&sums[pixel][3]), atomicLoad(&sums[pixel][4]));
+        let alpha = 1.0 - transmittance_of(8u * min(atomicLoad(&sums[pixel][0]), 0xfffffffu));
+        blended = over(front, average(color, weight, MEAN_UNIT), alpha);
+    }
+    for (var i = 0u; i < 5u; i++) {
+        atomicStore(&sums[pixel][i], 0u);
+    }
+    return blended;
+}
+
+fn close(pixel: u32) {
+    atomicOr(&closed[pixel / 32u], 1u << (pixel % 32u));
+}
+
+fn begin(tile: vec2<u32>, lane: u32, is_inside: bool) {
+    if lane < SLICES {
+        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.x], tiles.capacity);
+    }
+    if lane < 2u {
+        atomicStore(&closed[lane], 0u);
+    }
+    if lane < PIXELS {
+        atomicStore(&counts[lane], 0u);
+        for (var i = 0u; i < 5u; i++) {
+            atomicStore(&sums[lane][i], 0u);
+        }
+    }
+    if lane == 0u {
+        bounds[0] = min(tile.y, tiles.capacity);
+        atomicStore(&total, 0u);
+        atomicStore(&hairy_pixels, 0u);
+    }
+    workgroupBarrier();
+    if lane < PIXELS && !is_inside {
+        close(lane);
+    }
+    if lane == 0u {
+        plan = unit_from(0u, FIRST_RATE);
+    }
+}
+
+// Chooses what comes next; one lane comes here, all others wait.
+fn go_on(unit: Unit, found: u32) {
+    let is_closed = (atomicLoad(&closed[0]) & atomicLoad(&closed[1])) == 0xffffffffu;
+    plan = next_unit(tiles, unit, found);
+    if is_closed {
+        plan.first = SLICES;
+    }
+    atomicStore(&total, 0u);
+}
+
+fn blend_tile(tile: vec2<u32>, lane: u32) {
+    let corner = vec2(tile.x % tile_columns(), tile.x / tile_columns()) * TILE;
+    let pixel = corner + vec2(lane % TILE, lane / TILE);
+    let is_inside = lane < PIXELS && all(pixel < view.size);
+    begin(tile, lane, is_inside);
+    var front = Front(vec3(0.0), 1.0);
+    var fragments = 0u;
+    loop {
+        let unit = workgroupUniformLoad(&plan);
+        if unit.first >= SLICES {
+            break;
+        }
+        for (var i = bounds[unit.first] + lane / SHARE; i < bounds[unit.end]; i += LANES / SHARE) {
+            collect(unit, corner, i, lane % SHARE);
+        }
+        workgroupBarrier();
+        let found = atomicLoad(&total);
+        let is_blended = unit.is_mean == 1u || found <= ENTRIES;
+        sort(select(0u, found, is_blended && unit.is_mean == 0u), lane);
+        if lane < PIXELS {
+            if unit.is_mean == 1u {
+                front = blend_mean(front, lane);
+            } else if is_blended {
+                front = blend_sorted(front, lane);
+            }
+            atomicStore(&counts[lane], 0u);
+            if front.transmittance < tiles.closed_below {
+                close(lane);
+            }
+        }
+        fragments += select(0u, found, is_blended);
+        workgroupBarrier();
+        if lane == 0u {
+            go_on(unit, found);
+        }
+    }
+    if is_inside {
+        let color = vec4(front.color, 1.0 - front.transmittance);
+        resolved[pixel.y * view.size.x + pixel.x] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+        atomicAdd(&hairy_pixels, u32(color.a > 0.0));
+    }
+    workgroupBarrier();
+    if lane == 0u {
+        let pixels = atomicLoad(&hairy_pixels);
+        hairy[tile.x] = pixels;
+        atomicAdd(&counters.pixels_with_hair, pixels);
+        atomicAdd(&counters.fragments, fragments);
+    }
+}
+
+@compute @workgroup_size(LANES)
+fn tile_blend(@builtin(local_invocation_index) lane: u32) {
+    loop {
+        if lane == 0u {
+            job = take_tile();
+        }
+        let tile = workgroupUniformLoad(&job);
+        if tile.x == NO_TILE {
+            break;
+        }
+        blend_tile(tile, lane);
+    }
+}

@@ -1,0 +1,180 @@
+//! Tiles: every fragment of a pixel in its exact order, from front to back until nothing more is seen.
+//!
+//! The screen is divided into tiles of 8 x 8 pixels, and depth into slices. Segments are referred to from the bins, a slice of a
+//! tile, that they touch. A group of lanes then makes the fragments of a tile, slice after slice, sorts them in its own memory and
+//! blends them. So fragments are never stored, those that nobody sees are never made, and the memory is that of the references.
+//! The same is done by Unity's high quality lines and by Frostbite's hair (see `Frostbite Hair`, SIGGRAPH 2019), which sort
+//! segments, not fragments.
+
+mod kernels;
+mod layout;
+mod memory;
+
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::error::{Error, Need, Result};
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::view::View;
+
+use crate::composite::Composite;
+use crate::predict;
+use crate::renderer::Targets;
+use crate::resolved::check_pixels;
+use crate::strands::SectionDraw;
+use crate::technique::TechniqueInstance;
+use crate::views::BoundView;
+use kernels::Kernels;
+use layout::Layout;
+use memory::Memory;
+
+#[cfg(test)]
+pub(crate) use layout::TilesUniform;
+
+/// Exact order in tiles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TilesDesc {
+    /// Memory that the references to segments may take, 4 bytes each; at most [`TilesDesc::MAX_REFERENCE_BYTES`]. The device's
+    /// own limit for one binding holds too.
+    pub max_reference_bytes: u64,
+    /// Transmittance of a pixel below which nothing more is blended into it.
+    pub closed_below: f32,
+}
+
+impl TilesDesc {
+    /// The largest [`TilesDesc::max_reference_bytes`].
+    pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
+
+    /// The same with room for at most so many bytes of references.
+    #[must_use]
+    pub fn max_reference_bytes(self, max_reference_bytes: u64) -> Self {
+        Self { max_reference_bytes, ..self }
+    }
+
+    /// The same with another end of what is seen.
+    #[must_use]
+    pub fn closed_below(self, closed_below: f32) -> Self {
+        Self { closed_below, ..self }
+    }
+}
+
+impl Default for TilesDesc {
+    /// Room for 16.7 million references; a pixel is closed when less than 1/1024 passes.
+    fn default() -> Self {
+        Self { max_reference_bytes: Self::MAX_REFERENCE_BYTES, closed_below: 1.0 / 1024.0 }
+    }
+}
+
+impl From<TilesDesc> for crate::Technique {
+    fn from(desc: TilesDesc) -> Self {
+        Self::Tiles(desc)
+    }
+}
+
+/// Tiles at work.
+#[derive(Debug)]
+pub(crate) struct Tiles {
+    desc: TilesDesc,
+    kernels: Kernels,
+    composite: Composite,
+    memory: Memory,
+}
+
+impl Tiles {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &TilesDesc, size: [u32; 2], target: Format) -> Result<Self> {
+        check(backend, size)?;
+        Ok(Self {
+            desc: *desc,
+            kernels: Kernels::new(backend)?,
+            composite: Composite::new(backend, target)?,
+            memory: Memory::new(backend, size, desc)?,
+        })
+    }
+
+    fn forget_bindings(&mut self) {
+        self.kernels.forget_bindings();
+        self.composite.bound.clear();
+    }
+
+    #[cfg(test)]
+    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 5] {
+        self.kernels.shaders()
+    }
+}
+
+impl TechniqueInstance for Tiles {
+    fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
+        check(backend, size)?;
+        self.memory.resize(backend, size)?;
+        self.forget_bindings();
+        Ok(())
+    }
+
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
+        predict::references(view, draws)
+    }
+
+    fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {
+        let grown = self.memory.grow_references(backend, references);
+        self.forget_bindings();
+        grown
+    }
+
+    fn reserve_vertices(&mut self, backend: &mut dyn Backend, draws: &[SectionDraw]) -> Result<()> {
+        let grown = self.memory.grow_vertices(backend, layout::vertices(draws));
+        self.forget_bindings();
+        grown
+    }
+
+    fn capacity(&self) -> u32 {
+        self.memory.references.count
+    }
+
+    fn bytes(&self) -> u64 {
+        self.memory.bytes()
+    }
+
+    fn counters(&self, view: usize) -> (BufferId, u64) {
+        (self.memory.counters.of(view), 0)
+    }
+
+    fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
+        self.kernels.begin_frame();
+        self.composite.bound.begin_frame();
+        self.memory.counters.clear(list, views);
+    }
+
+    fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
+        let layout = Layout::new(draws)?;
+        if layout.vertices > self.memory.vertices.count {
+            let message = format!(
+                "{} vertices, there is room for {}: `grow_to_predicted` makes room",
+                layout.vertices, self.memory.vertices.count
+            );
+            return Err(Error::rule("hair.render.tiles", message));
+        }
+        let uniforms = layout.uniforms(view.view, draws, &self.desc, self.memory.references.count);
+        self.memory.uniforms.upload(list, 2 * view.index, &uniforms);
+        self.memory.clear(list, view.size);
+        for (draw, &first) in draws.iter().zip(&layout.first_vertices) {
+            self.kernels.points(list, view, draw, &self.memory, first)?;
+        }
+        self.kernels.depth(list, view, &self.memory, targets.depth)?;
+        self.kernels.bin(list, view, &self.memory, layout.segments, false)?;
+        self.kernels.alloc(list, view, &self.memory)?;
+        self.kernels.bin(list, view, &self.memory, layout.segments, true)?;
+        self.kernels.blend(list, view, &self.memory, targets.depth)?;
+        self.composite.pass(list, view, &self.memory.screen.resolved, targets.color)
+    }
+}
+
+/// Whether a device can draw hair on a screen of this size.
+fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
+    let needs = [
+        Need::StorageBuffers(8),
+        Need::TextureEdge(size[0].max(size[1])),
+        Need::StorageBindingBytes(memory::largest_binding(size)),
+    ];
+    backend.caps().check("hair.render", &needs)?;
+    check_pixels(size)
+}

@@ -1,0 +1,123 @@
+//! Where the segments of all sections are, and how far from the eye.
+
+use tressfx_core::error::{Error, Result};
+use tressfx_core::gpu_struct;
+use tressfx_core::view::View;
+
+use super::TilesDesc;
+use crate::strands::SectionDraw;
+
+/// Sections that can be drawn together.
+pub(crate) const MAX_SECTIONS: usize = 64;
+
+/// Slices of depth.
+pub(crate) const SLICES: u32 = 64;
+
+/// The vertices of a section begin at a multiple of this, since ranges of bindings are aligned to 256 bytes.
+const VERTEX_ALIGNMENT: u32 = 32;
+
+/// How much further than at rest hair is expected from the middle of its section. What is further away still comes in its
+/// order, with more work.
+const SWING: f32 = 1.1;
+
+gpu_struct! {
+    /// What the kernels know of the segments and of the slices.
+    pub(crate) struct TilesUniform {
+        /// Segments of all sections.
+        pub segments: u32,
+        /// Sections that are drawn.
+        pub sections: u32,
+        /// References that there is room for.
+        pub capacity: u32,
+        /// 0 to count references, 1 to store them.
+        pub stores: u32,
+        /// Distance at which the first slice begins.
+        pub nearest: f32,
+        /// Slices in a unit of distance.
+        pub slices_per_unit: f32,
+        /// Transmittance of a pixel below which nothing more is seen.
+        pub closed_below: f32,
+        /// Nothing.
+        pub unused: u32,
+        /// Of each section: its first segment, its first vertex, its strands, nothing.
+        pub layouts: [[u32; 4]; MAX_SECTIONS],
+    }
+}
+
+/// Vertices that sections take, with what is left free between them.
+pub(crate) fn vertices(draws: &[SectionDraw]) -> u64 {
+    let of = |draw: &SectionDraw| draw.strands.buffers.shape.strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
+    draws.iter().map(|draw| u64::from(of(draw))).sum()
+}
+
+/// Where the sections of a frame are.
+#[derive(Debug)]
+pub(crate) struct Layout {
+    pub(crate) segments: u32,
+    pub(crate) vertices: u64,
+    pub(crate) first_vertices: Vec<u32>,
+    sections: [[u32; 4]; MAX_SECTIONS],
+}
+
+impl Layout {
+    /// # Errors
+    /// If there are too many sections, or more vertices than can be counted.
+    pub(crate) fn new(draws: &[SectionDraw]) -> Result<Self> {
+        let rule = |message: String| Error::rule("hair.render.tiles", message);
+        if draws.len() > MAX_SECTIONS {
+            return Err(rule(format!("{} sections, tiles can draw {MAX_SECTIONS}", draws.len())));
+        }
+        let vertices = vertices(draws);
+        if vertices > u64::from(u32::MAX) {
+            return Err(rule(format!("{vertices} vertices, tiles can draw {}", u32::MAX)));
+        }
+        let (mut segment, mut vertex) = (0, 0);
+        let mut sections = [[0; 4]; MAX_SECTIONS];
+        let mut first_vertices = Vec::new();
+        for (section, draw) in sections.iter_mut().zip(draws) {
+            let shape = &draw.strands.buffers.shape;
+            *section = [segment, vertex, shape.strands(), 0];
+            first_vertices.push(vertex);
+            segment += shape.segments();
+            vertex += shape.strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
+        }
+        Ok(Self { segments: segment, vertices, first_vertices, sections })
+    }
+
+    /// What the kernels are given: for counting and for storing.
+    pub(crate) fn uniforms(
+        &self,
+        view: &View,
+        draws: &[SectionDraw],
+        desc: &TilesDesc,
+        capacity: u32,
+    ) -> [TilesUniform; 2] {
+        let [nearest, farthest] = distances(view, draws);
+        let uniform = |stores| TilesUniform {
+            segments: self.segments,
+            sections: draws.len() as u32,
+            capacity,
+            stores,
+            nearest,
+            slices_per_unit: SLICES as f32 / (farthest - nearest),
+            closed_below: desc.closed_below,
+            unused: 0,
+            layouts: self.sections,
+        };
+        [uniform(0), uniform(1)]
+    }
+}
+
+/// The distances from the plane of the eye between which the sections are expected; the second is larger.
+fn distances(view: &View, draws: &[SectionDraw]) -> [f32; 2] {
+    let lens = view.lens();
+    let of = |draw: &SectionDraw| {
+        let (center, radius) = draw.strands.sphere;
+        let distance = -(lens.to_eye * draw.pose.matrix()).transform_point3(center).z;
+        [distance - radius * SWING, distance + radius * SWING]
+    };
+    let both = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let [nearest, farthest] = draws.iter().map(of).reduce(both).unwrap_or_default();
+    let nearest = nearest.max(lens.near);
+    [nearest, farthest.max(nearest + nearest.abs() * 1e-3 + 1e-6)]
+}

@@ -1,0 +1,170 @@
+//! What tiles keep.
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::uniform_array::UniformArray;
+
+use super::TilesDesc;
+use super::layout::{SLICES, TilesUniform};
+use crate::counters::ViewCounters;
+use crate::resolved::{Resolved, pixels, storage, tile_count};
+use crate::views::MAX_VIEWS;
+
+/// Kinds of tiles by the number of their references.
+const CLASSES: u64 = 16;
+
+/// Bytes of the queue before its tiles.
+const QUEUE_HEADER: u64 = 16 + 4 * CLASSES;
+
+/// Vertices of all sections, before the eye.
+#[derive(Debug)]
+pub(crate) struct Vertices {
+    /// `vec4<f32>` a vertex: a point in the space of the eye, and a radius.
+    pub(crate) points: BufferId,
+    /// `vec2<u32>` a vertex: four half floats, colour and opacity.
+    pub(crate) paints: BufferId,
+    /// How many there is room for.
+    pub(crate) count: u64,
+}
+
+impl Vertices {
+    const BYTES: u64 = 16 + 8;
+
+    fn new(backend: &mut dyn Backend, count: u64) -> Result<Self> {
+        let points = storage(backend, "hair.render.points", 16 * count)?;
+        Ok(Self { points, paints: storage(backend, "hair.render.paints", 8 * count)?, count })
+    }
+}
+
+/// References to segments, of all tiles.
+#[derive(Debug)]
+pub(crate) struct References {
+    /// `u32` a reference: the first vertex of a segment.
+    pub(crate) buffer: BufferId,
+    /// How many there is room for.
+    pub(crate) count: u32,
+}
+
+impl References {
+    const BYTES: u64 = 4;
+
+    fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
+        let buffer = storage(backend, "hair.render.references", Self::BYTES * u64::from(count))?;
+        Ok(Self { buffer, count })
+    }
+}
+
+/// What there is of each tile, and the result.
+#[derive(Debug)]
+pub(crate) struct Screen {
+    size: [u32; 2],
+    /// `u32` a slice of each tile.
+    pub(crate) bins: BufferId,
+    /// `f32` a tile: the nearness of the farthest that the scene shows.
+    pub(crate) depths: BufferId,
+    /// Tiles that have references.
+    pub(crate) queue: BufferId,
+    /// The colours of the pixels.
+    pub(crate) resolved: Resolved,
+}
+
+impl Screen {
+    fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
+        let [bins, depths, queue] = sizes(size);
+        Ok(Self {
+            size,
+            bins: storage(backend, "hair.render.bins", bins)?,
+            depths: storage(backend, "hair.render.tile_depths", depths)?,
+            queue: storage(backend, "hair.render.queue", queue)?,
+            resolved: Resolved::new(backend, size)?,
+        })
+    }
+
+    fn destroy(self, backend: &mut dyn Backend) {
+        self.resolved.destroy(backend);
+        [self.bins, self.depths, self.queue].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}
+
+/// Bytes of bins, depths and queue.
+fn sizes(size: [u32; 2]) -> [u64; 3] {
+    let tiles = u64::from(tile_count(size));
+    [4 * u64::from(SLICES) * tiles, 4 * tiles, QUEUE_HEADER + 8 * CLASSES * tiles]
+}
+
+/// Bytes of the largest buffer that a screen of this size takes.
+pub(crate) fn largest_binding(size: [u32; 2]) -> u64 {
+    sizes(size).into_iter().max().unwrap_or(0).max(Resolved::PIXEL_BYTES * pixels(size))
+}
+
+/// The buffers of tiles.
+#[derive(Debug)]
+pub(crate) struct Memory {
+    most_references: u32,
+    pub(crate) vertices: Vertices,
+    pub(crate) references: References,
+    pub(crate) screen: Screen,
+    /// What is counted of each view.
+    pub(crate) counters: ViewCounters,
+    /// [`TilesUniform`] for counting and for storing, of each view.
+    pub(crate) uniforms: UniformArray<TilesUniform>,
+}
+
+impl Memory {
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &TilesDesc) -> Result<Self> {
+        let caps = backend.caps();
+        let bytes = desc.max_reference_bytes.min(TilesDesc::MAX_REFERENCE_BYTES);
+        let bytes = bytes.min(caps.max_storage_binding_bytes).min(caps.max_buffer_bytes);
+        let most_references = (bytes / References::BYTES).max(1) as u32;
+        Ok(Self {
+            most_references,
+            vertices: Vertices::new(backend, 0)?,
+            references: References::new(backend, most_references.min(1 << 16))?,
+            screen: Screen::new(backend, size)?,
+            counters: ViewCounters::new(backend)?,
+            uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", 2 * MAX_VIEWS)?,
+        })
+    }
+
+    pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
+        let screen = Screen::new(backend, size)?;
+        std::mem::replace(&mut self.screen, screen).destroy(backend);
+        Ok(())
+    }
+
+    /// Makes room for `wanted` references, or for as many as are allowed.
+    pub(crate) fn grow_references(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
+        let count = wanted.min(u64::from(self.most_references)) as u32;
+        if count > self.references.count {
+            let grown = References::new(backend, count)?;
+            backend.destroy(std::mem::replace(&mut self.references, grown).buffer.into());
+        }
+        Ok(())
+    }
+
+    /// Makes room for `wanted` vertices.
+    pub(crate) fn grow_vertices(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
+        if wanted > self.vertices.count {
+            let grown = Vertices::new(backend, wanted)?;
+            let old = std::mem::replace(&mut self.vertices, grown);
+            [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        sizes(self.screen.size).iter().sum::<u64>()
+            + Resolved::bytes(self.screen.size)
+            + Vertices::BYTES * self.vertices.count
+            + References::BYTES * u64::from(self.references.count)
+            + ViewCounters::BYTES
+    }
+
+    /// Empties the bins and the queue for a view of this size.
+    pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
+        list.clear(self.screen.bins, 0, sizes(size)[0]);
+        list.clear(self.screen.queue, 0, QUEUE_HEADER);
+    }
+}
