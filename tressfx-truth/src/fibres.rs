@@ -41,7 +41,7 @@ impl Fibres {
         fibres.colors.reserve_exact(count as usize);
         fibres.strands.reserve_exact(count as usize);
         let mut first = 0;
-        for section in sections {
+        for section in sections.iter().filter(|section| !section.positions.is_empty()) {
             fibres.add(rays, section, first);
             first += section.shape.strands();
         }
@@ -56,7 +56,7 @@ impl Fibres {
                 let [x, y, z, _] = section.positions[index];
                 let is_sound = [x, y, z].iter().all(|part| part.abs() < LARGEST);
                 let local = if is_sound { DVec3::new(x.into(), y.into(), z.into()) } else { DVec3::NAN };
-                let point = rays.to_eye(pose.transform_point3(local));
+                let point = rays.in_eye_space(pose.transform_point3(local));
                 self.vertices.push(Vertex { point, radius: section.radius(strand, vertex) });
                 self.colors.push(section.colors[index]);
                 self.strands.push(first + strand);

@@ -59,6 +59,11 @@ impl Halves {
         Self { counts: [samples / 2, samples - samples / 2] }
     }
 
+    /// Whether each half has a sample.
+    pub(crate) fn tell_error(&self) -> bool {
+        self.counts[0] > 0
+    }
+
     pub(crate) fn samples(&self) -> u32 {
         self.counts[0] + self.counts[1]
     }
@@ -77,14 +82,27 @@ impl Halves {
         let [p, q] = self.counts.map(f64::from);
         (sum.0[0] / p - sum.0[1] / q).abs() * (p * q).sqrt() / (p + q)
     }
+}
 
-    /// The errors of all pixels in two figures.
-    pub(crate) fn summary(&self, sums: &[Sum]) -> Option<SamplingError> {
-        if self.counts[0] == 0 || sums.is_empty() {
-            return None;
-        }
-        let errors = || sums.iter().map(|sum| self.error(sum));
-        let square = errors().map(DVec4::length_squared).sum::<f64>() / (4 * sums.len()) as f64;
-        Some(SamplingError { rms: square.sqrt(), max: errors().map(DVec4::max_element).fold(0.0, f64::max) })
+/// The errors of some pixels, summed up.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Errors {
+    square: f64,
+    max: f64,
+}
+
+impl Errors {
+    pub(crate) fn add(&mut self, error: DVec4) {
+        self.square += error.length_squared();
+        self.max = self.max.max(error.max_element());
+    }
+
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self { square: self.square + other.square, max: self.max.max(other.max) }
+    }
+
+    /// In two figures, for a picture of so many pixels.
+    pub(crate) fn summary(self, pixels: usize) -> SamplingError {
+        SamplingError { rms: (self.square / (4 * pixels).max(1) as f64).sqrt(), max: self.max }
     }
 }

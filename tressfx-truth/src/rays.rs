@@ -44,7 +44,7 @@ impl Rays {
     }
 
     /// A point of the world in the space of the eye.
-    pub(crate) fn to_eye(&self, point: DVec3) -> DVec3 {
+    pub(crate) fn in_eye_space(&self, point: DVec3) -> DVec3 {
         self.to_eye.transform_point3(point)
     }
 
@@ -106,7 +106,7 @@ mod tests {
             for i in 0..27 {
                 let part = |by: i32| f64::from(i / by % 3) / 2.0;
                 let ndc = DVec3::new(1.6 * part(1) - 0.8, 1.6 * part(3) - 0.8, 0.1 + 0.8 * part(9));
-                let point = rays.to_eye(matrix.inverse().project_point3(ndc));
+                let point = rays.in_eye_space(matrix.inverse().project_point3(ndc));
                 let at = DVec2::new(1.0 + ndc.x, 1.0 - ndc.y) * 0.5 * DVec2::new(320.0, 200.0);
                 let ray = rays.through(at);
                 let miss = ray.at(point.z).distance(point) / point.z;

@@ -1,12 +1,12 @@
 //! One tile of the picture: its segments front to back, over all rays of its pixels.
 
-use glam::{DVec2, UVec2};
+use glam::{DVec2, DVec4, UVec2};
 
 use crate::bound::Bound;
 use crate::fibres::Fibres;
 use crate::layer::{Blend, Hits, Range};
 use crate::pattern::points;
-use crate::picture::{Halves, Sum};
+use crate::picture::{Errors, Halves, Sum};
 use crate::rays::{Ray, Rays};
 
 /// Rays of a pixel that are followed at the same time, which bounds memory whatever the number of samples is.
@@ -40,6 +40,14 @@ struct Pixel {
     open: u32,
 }
 
+/// A finished tile.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TilePicture {
+    /// Premultiplied; empty where there is no hair.
+    pub(crate) pixels: Vec<DVec4>,
+    pub(crate) errors: Errors,
+}
+
 /// What all tiles share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scene<'a> {
@@ -49,8 +57,11 @@ pub(crate) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// The sums of pixels, each given with the distance of the scene. `segments` are all that may be seen there.
-    pub(crate) fn tile(&self, work: &mut Workspace, pixels: &[([u32; 2], f64)], segments: &[u32]) -> Vec<Sum> {
+    /// Renders pixels, each given with the distance of the scene. `segments` are all that may be seen there.
+    pub(crate) fn tile(&self, work: &mut Workspace, pixels: &[([u32; 2], f64)], segments: &[u32]) -> TilePicture {
+        if segments.is_empty() {
+            return TilePicture::default();
+        }
         let mut sums = vec![Sum::default(); pixels.len()];
         work.sort(self, segments);
         let samples = self.halves.samples();
@@ -65,7 +76,11 @@ impl Scene<'_> {
                 }
             }
         }
-        sums
+        let mut errors = Errors::default();
+        if self.halves.tell_error() {
+            sums.iter().for_each(|sum| errors.add(self.halves.error(sum)));
+        }
+        TilePicture { pixels: sums.iter().map(|sum| self.halves.mean(sum)).collect(), errors }
     }
 }
 

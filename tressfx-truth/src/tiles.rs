@@ -143,9 +143,11 @@ mod tests {
     #[test]
     fn runs_hold_every_tile_once_and_are_no_larger_than_they_may_be() {
         let most = MOST_LISTED as u32;
-        assert_eq!(runs(&[5, 6, 7]), [0..3]);
-        assert_eq!(runs(&[most, 1, most - 1, 1]), [0..1, 1..3, 3..4]);
-        assert_eq!(runs(&[most + 1, most + 1]), [0..1, 1..2]);
+        let ends = |counts: &[u32]| runs(counts).iter().map(|run| (run.start, run.end)).collect::<Vec<_>>();
+        assert_eq!(ends(&[]), [(0, 0)]);
+        assert_eq!(ends(&[5, 6, 7]), [(0, 3)]);
+        assert_eq!(ends(&[most, 1, most - 1, 1]), [(0, 1), (1, 3), (3, 4)]);
+        assert_eq!(ends(&[most + 1, most + 1]), [(0, 1), (1, 2)]);
     }
 
     #[test]

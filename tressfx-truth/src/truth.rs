@@ -10,10 +10,10 @@ use tressfx_core::view::View;
 use crate::error::TruthError;
 use crate::fibres::Fibres;
 use crate::layer::{Hits, Layer, Range};
-use crate::picture::{Halves, Picture, Sum};
+use crate::picture::{Errors, Halves, Picture};
 use crate::rays::Rays;
 use crate::section::Section;
-use crate::tile::{Scene, Workspace};
+use crate::tile::{Scene, TilePicture, Workspace};
 use crate::tiles::{Lists, Tiling, runs};
 
 /// How much of a picture is done.
@@ -56,36 +56,30 @@ impl Truth {
     /// The picture, from the mean of `samples` rays a pixel. `progress` is called from many threads.
     pub fn render(&self, samples: NonZeroU32, progress: &(dyn Fn(Progress) + Sync)) -> Picture {
         let halves = Halves::new(samples.get());
-        let sums = self.sums(halves, progress);
-        let pixels: Vec<DVec4> = sums.iter().map(|sum| halves.mean(sum)).collect();
-        Picture { size: self.size, pixels, error: halves.summary(&sums) }
-    }
-
-    fn sums(&self, halves: Halves, progress: &(dyn Fn(Progress) + Sync)) -> Vec<Sum> {
-        let mut sums = vec![Sum::default(); self.size[0] as usize * self.size[1] as usize];
-        if sums.is_empty() || self.fibres.end() == 0 {
-            return sums;
-        }
         let scene = Scene { rays: &self.rays, fibres: &self.fibres, halves };
         let tiling = Tiling::new(self.size);
         let counts = tiling.counts(&self.rays, &self.fibres);
+        let mut pixels = vec![DVec4::ZERO; self.size[0] as usize * self.size[1] as usize];
+        let mut errors = Errors::default();
         let done = AtomicU64::new(0);
         for run in runs(&counts) {
             let lists = Lists::new(&tiling, &self.rays, &self.fibres, &counts, run);
             let tiles = lists.tiles().into_par_iter().with_max_len(1).map_init(Workspace::default, |work, tile| {
                 let pixels: Vec<_> = tiling.pixels(tile).map(|pixel| (pixel, self.scene_at(pixel))).collect();
-                let segments = lists.of(tile);
-                let sums = if segments.is_empty() { Vec::new() } else { scene.tile(work, &pixels, segments) };
+                let picture = scene.tile(work, &pixels, lists.of(tile));
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 progress(Progress { done, tiles: u64::from(tiling.count()) });
-                (tile, sums)
+                (tile, picture)
             });
-            let tiles: Vec<(u32, Vec<Sum>)> = tiles.collect();
-            for (pixel, sum) in tiles.iter().flat_map(|(tile, sums)| tiling.pixels(*tile).zip(sums)) {
-                sums[self.index(pixel)] = *sum;
+            for (tile, picture) in tiles.collect::<Vec<(u32, TilePicture)>>() {
+                errors = errors.with(picture.errors);
+                for (pixel, color) in tiling.pixels(tile).zip(picture.pixels) {
+                    pixels[self.index(pixel)] = color;
+                }
             }
         }
-        sums
+        let error = halves.tell_error().then(|| errors.summary(pixels.len()));
+        Picture { size: self.size, pixels, error }
     }
 
     /// All layers along the ray through a point of the picture, nearest first, however much is seen of them. The point is in

@@ -4,6 +4,7 @@ mod support;
 
 use glam::{DVec4, Vec3};
 use support::{Hair, assert_near, orthographic, perspective, pixel, premultiplied, render, samples};
+use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::view::{Pose, View};
 use tressfx_truth::{Progress, Section, Truth, TruthError};
 
@@ -25,6 +26,10 @@ fn without_strands_there_is_nothing() {
     let picture = render(&perspective([8, 8]), &[&Hair::new(0.1, &[])], 4);
     assert_eq!(picture.pixels(), [DVec4::ZERO; 64]);
     assert_eq!(picture.error().unwrap().max, 0.0);
+    // Of any number of strands without a vertex.
+    let mut hair = Hair::new(0.1, &[]);
+    hair.shape = StrandShape { guides: u32::MAX, follows: u32::MAX, vertices: 0 };
+    assert_eq!(render(&perspective([8, 8]), &[&hair, &wide()], 4), render(&perspective([8, 8]), &[&wide()], 4));
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod motion;
 mod params;
 mod passes;
 mod picture;
+mod reference;
 mod render;
 mod run;
 mod shaders;
