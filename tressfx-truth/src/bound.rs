@@ -14,7 +14,7 @@ pub(crate) struct Bound {
     /// Corners of a rectangle, in pixels.
     pub(crate) low: DVec2,
     pub(crate) high: DVec2,
-    /// Not below the distance of anything of the segment: where it can be entered first.
+    /// No ray enters the segment nearer than this.
     pub(crate) nearest: f64,
     /// The axis on the picture, and how far from it the segment reaches; infinite where only the rectangle is known.
     start: DVec2,
