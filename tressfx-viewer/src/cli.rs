@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -79,8 +80,8 @@ pub(crate) struct Scene {
     /// Files, or `builtin:NAME[:STRANDS[:VERTICES]]`; several become the sections of one groom
     #[arg(required = true, value_name = "GROOM")]
     pub(crate) grooms: Vec<String>,
-    /// Frames to simulate
-    #[arg(long, default_value_t = 120, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Frames to simulate; 0 is the rest pose
+    #[arg(long, default_value_t = 120)]
     pub(crate) frames: u32,
     /// Frames a second
     #[arg(long, default_value_t = 60.0, value_parser = fps)]
@@ -141,6 +142,12 @@ pub(crate) struct Render {
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
+    /// Draw the last frame with the reference renderer: rays through fibres as solids, on the CPU
+    #[arg(long)]
+    pub(crate) reference: bool,
+    /// Rays a pixel of the reference renderer
+    #[arg(long, default_value = "64", value_name = "N", requires = "reference")]
+    pub(crate) samples: NonZeroU32,
 }
 
 #[derive(Debug, Args)]

@@ -15,6 +15,7 @@ mod oit;
 mod params;
 mod passes;
 mod picture;
+mod reference;
 mod render;
 mod run;
 mod shaders;

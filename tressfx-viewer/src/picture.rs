@@ -5,20 +5,22 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use glam::{Vec3, Vec4};
 use half::f16;
 use image::codecs::gif::{GifEncoder, Repeat};
 use image::{Delay, Frame, Rgb, RgbImage, buffer::ConvertBuffer};
 
-/// Turns a read-back of `Rgba16F`, linear light, into a picture for a screen.
-pub(crate) fn developed(bytes: &[u8], size: [u32; 2]) -> RgbImage {
-    let channel = |texel: &[u8], index: usize| {
-        let half = [texel[2 * index], texel[2 * index + 1]];
-        encode(f16::from_le_bytes(half).to_f32())
-    };
-    let mut texels = bytes.chunks_exact(8);
+/// Colours in a read-back of four half floats each.
+pub(crate) fn texels(bytes: &[u8]) -> impl Iterator<Item = Vec4> {
+    let channel = |texel: &[u8], i: usize| f16::from_le_bytes([texel[2 * i], texel[2 * i + 1]]).to_f32();
+    bytes.chunks_exact(8).map(move |texel| Vec4::from_array([0, 1, 2, 3].map(|i| channel(texel, i))))
+}
+
+/// Turns linear light, row by row, into a picture for a screen.
+pub(crate) fn developed(light: impl IntoIterator<Item = Vec3>, size: [u32; 2]) -> RgbImage {
+    let mut light = light.into_iter();
     RgbImage::from_fn(size[0], size[1], |_, _| {
-        let texel = texels.next().expect("a texture holds a texel for every pixel");
-        Rgb([0, 1, 2].map(|index| channel(texel, index)))
+        Rgb(light.next().expect("there is light for every pixel").to_array().map(encode))
     })
 }
 
@@ -160,7 +162,7 @@ mod tests {
             .into_iter()
             .flat_map(|v| f16::from_f32(v).to_le_bytes())
             .collect();
-        let picture = developed(&texels, [1, 2]);
+        let picture = developed(super::texels(&texels).map(Vec4::truncate), [1, 2]);
         assert!(picture[(0, 0)][0] > 230 && picture[(0, 0)][1] == 0);
         assert!(picture[(0, 1)][1] > 230 && picture[(0, 1)][0] == 0);
     }

@@ -65,9 +65,18 @@ impl Run {
         Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind, colliders })
     }
 
-    /// Records the next frame of the simulation. The motion is known between frames too, so few frames do not make it coarser.
+    /// How many frames come out: of no simulated ones, the rest pose.
+    pub(crate) fn frames(args: &cli::Scene) -> u32 {
+        args.frames.max(1)
+    }
+
+    /// Records the next frame of the simulation; no time passes where no frames are to be simulated. The motion is known between frames too, so few frames do not make it coarser.
     pub(crate) fn step(&mut self, args: &cli::Scene) -> Result<PassList> {
         let mut list = PassList::new();
+        if args.frames == 0 {
+            self.sim.step(&mut list, &StepInput::new(0.0, self.head(args)))?;
+            return Ok(list);
+        }
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
         for part in 1..=parts as u32 {
             let head = self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
@@ -174,9 +183,10 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn new(frames: u32) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(u64::from(frames)), ProgressDrawTarget::hidden());
-        let style = ProgressStyle::with_template("{bar:40} frame {pos} of {len}, {eta} left");
+    /// Of `count` pieces, each a `unit`.
+    pub(crate) fn new(count: u64, unit: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template(&format!("{{bar:40}} {unit} {{pos}} of {{len}}, {{eta}} left"));
         Self { bar: bar.with_style(style.expect("the template is fixed")), begun: Instant::now() }
     }
 
@@ -185,6 +195,12 @@ impl Progress {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.inc(1);
+    }
+
+    /// One more piece is done, of a number that only now is known.
+    pub(crate) fn advance_of(&self, count: u64) {
+        self.bar.set_length(count);
+        self.advance();
     }
 }
 

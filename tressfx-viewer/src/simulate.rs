@@ -16,8 +16,9 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     let mut run = Run::new(&args.scene)?;
     let names: Vec<String> = run.groom.sections.iter().map(|section| section.name.clone()).collect();
     let files = files(&args.out, &names)?;
-    let progress = Progress::new(args.scene.frames);
-    for frame in 0..args.scene.frames {
+    let frames = Run::frames(&args.scene);
+    let progress = Progress::new(frames.into(), "frame");
+    for frame in 0..frames {
         let list = run.step(&args.scene)?;
         if args.scene.print_passes && frame == 0 {
             println!("{}", passes::table(&list));

@@ -60,6 +60,20 @@ pub(crate) struct RenderStats {
     pub(crate) peak_gpu_bytes: u64,
     /// Of those, the ones in which the technique of `--oit` keeps fragments and pixels.
     pub(crate) oit_bytes: u64,
+    /// Of the reference renderer, where it drew the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) reference: Option<ReferenceStats>,
+}
+
+/// What the reference renderer took, and how exact its picture is.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct ReferenceStats {
+    /// A pixel.
+    pub(crate) samples: u32,
+    pub(crate) seconds: f64,
+    /// Estimates of the error of sampling in linear light, over all pixels; none of a single sample.
+    pub(crate) rms_error: Option<f64>,
+    pub(crate) max_error: Option<f64>,
 }
 
 impl Stats {

@@ -22,11 +22,11 @@ pub(crate) struct Studio {
     pub(crate) targets: Targets,
     /// What the newest frame drew.
     pub(crate) drawn: RenderStats,
-    view: View,
+    pub(crate) view: View,
     lights: Lights,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
-    sections: Vec<(ShadedStrands, Material)>,
+    pub(crate) sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
 }
 
@@ -58,10 +58,21 @@ impl Studio {
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
     pub(crate) fn draw(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Ticket> {
+        self.draw_scene(list, head)?;
+        self.draw_hair(list, pose)
+    }
+
+    /// Records what is opaque.
+    pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose) -> Result<()> {
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
-        let Self { view, lights, targets, scene, renderer, .. } = self;
-        scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes)?;
+        let Self { view, lights, targets, scene, .. } = self;
+        Ok(scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes)?)
+    }
+
+    /// Records the hair over it.
+    pub(crate) fn draw_hair(&mut self, list: &mut PassList, pose: Pose) -> Result<Ticket> {
+        let Self { view, lights, targets, renderer, .. } = self;
         let view = ViewDraw::new(view, lights, *targets);
         renderer.draw(list, &[view], &draws(&self.sections, pose))?;
         Ok(self.renderer.request_counters(list, 0))
@@ -75,8 +86,7 @@ impl Studio {
             fragments: u64::from(counters.fragments),
             dropped: u64::from(counters.dropped),
             pixels_with_hair: u64::from(counters.pixels_with_hair),
-            peak_gpu_bytes: 0,
-            oit_bytes: 0,
+            ..RenderStats::default()
         };
         let before = self.renderer.capacity();
         self.renderer.grow_to_measured(&mut *run.backend, &counters)?;

@@ -152,6 +152,43 @@ fn animations_hold_every_frame() {
 }
 
 #[test]
+fn without_frames_the_rest_pose_is_drawn_and_written() {
+    let folder = folder("rest");
+    let rest = ["builtin:wavy:60:12", "--frames", "0", "--motion", "shake"];
+    let out = ["--size", "160x90", "--out", "a.png", "--stats", "a.json"];
+    passes(&folder, &[&["render"], &rest[..], &out].concat());
+    let stats: Value = serde_json::from_slice(&std::fs::read(folder.join("a.json")).unwrap()).unwrap();
+    assert_eq!(stats["frames"], 0);
+    assert!(stats["render"]["pixels_with_hair"].as_u64().unwrap() > 100, "{stats}");
+    assert!(stats["sim"]["max_edge_error"].as_f64().unwrap() < 1e-5, "{stats}");
+    passes(&folder, &[&["simulate"], &rest[..], &["--out", "a.tfx"]].concat());
+    passes(&folder, &["convert", "builtin:wavy:60:12", "b.tfx"]);
+    let [a, b] = ["a.tfx", "b.tfx"].map(|name| tressfx_asset::read(folder.join(name)).unwrap());
+    let far = a.points.iter().zip(&b.points).map(|(a, b)| glam::Vec3::from(*a).distance((*b).into()));
+    assert!(a.points.len() == b.points.len() && far.fold(0.0, f32::max) < 1e-6);
+}
+
+#[test]
+fn the_reference_draws_the_same_frame() {
+    let folder = folder("reference");
+    render(&folder, &["--out", "a.png"]);
+    let said = render(&folder, &["--out", "b.png", "--reference", "--samples", "16", "--stats", "b.json"]);
+    assert!(said.contains("16 samples a pixel") && said.contains("RMS"), "{said}");
+    let stats: Value = serde_json::from_slice(&std::fs::read(folder.join("b.json")).unwrap()).unwrap();
+    let figures = &stats["render"]["reference"];
+    assert_eq!(figures["samples"], 16);
+    assert!(figures["rms_error"].as_f64().unwrap() < 0.02, "{figures}");
+    let compared: Value = serde_json::from_str(&passes(&folder, &["compare", "a.png", "b.png", "--json"])).unwrap();
+    assert!(compared["psnr_db"].as_f64().unwrap() > 35.0, "the same hair: {compared}");
+    let differing = compared["differing_share"].as_f64().unwrap();
+    assert!(differing > 0.001 && differing < 0.5, "by another method: {compared}");
+    let refused = |extra: &[&str]| fails(&folder, &[&["render"], &SMALL[..], extra].concat()).0;
+    assert!(refused(&["--out", "c.gif", "--reference"]).contains(".png of the last frame"));
+    assert!(refused(&["--out", "c.png", "--samples", "4"]).contains("--reference"));
+    assert!(refused(&["--out", "c.png", "--reference", "--samples", "0"]).contains("--samples"));
+}
+
+#[test]
 fn adapters_are_listed() {
     assert!(!passes(&folder("adapters"), &["adapters"]).trim().is_empty());
 }

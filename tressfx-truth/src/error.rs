@@ -1,0 +1,48 @@
+//! What can be wrong with the input.
+
+/// Why there is nothing to render.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TruthError {
+    /// An array is not as long as the counts of its section say.
+    #[error("section {section}: {found} {what}, its counts ask for {expected}")]
+    Length {
+        /// Which section.
+        section: usize,
+        /// What the array holds.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+    /// A number is not finite, or is negative where it must not be.
+    #[error("section {section}: {what} {index} is not finite, or negative")]
+    Number {
+        /// Which section.
+        section: usize,
+        /// What the array holds.
+        what: &'static str,
+        /// The place in the array.
+        index: usize,
+    },
+    /// A pose does more than to turn and to move.
+    #[error("section {section}: {error}")]
+    Pose {
+        /// Which section.
+        section: usize,
+        /// What is wrong with it, in words.
+        error: String,
+    },
+    /// The depths are not one a pixel.
+    #[error("{found} depths of the scene for {expected} pixels")]
+    Depth {
+        /// How many there are.
+        found: usize,
+        /// Pixels of the view.
+        expected: usize,
+    },
+    /// All sections together have 2^32 vertices or more.
+    #[error("{0} vertices, there may be less than 2^32")]
+    TooMany(u64),
+}

@@ -1,0 +1,108 @@
+//! The picture of the reference renderer: `tressfx render --reference`.
+//!
+//! What it is given is what the techniques on the GPU are given, read back: positions, the colours that `hair.render.shade`
+//! wrote, and the opaque scene with its depth. So the difference of the two pictures is what the technique makes of the
+//! visibility of strands, and nothing else.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use glam::DVec3;
+use image::RgbImage;
+use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::strand_buffers::StrandShape;
+use tressfx_render::SectionDraw;
+use tressfx_truth::{Picture, Section, Truth};
+
+use crate::cli::Render;
+use crate::picture::{developed, texels};
+use crate::run::{Progress, Run};
+use crate::stats::ReferenceStats;
+use crate::studio::Studio;
+
+/// What comes back from the GPU.
+struct Tickets {
+    color: Ticket,
+    depth: Ticket,
+    counters: Ticket,
+    positions: Vec<Ticket>,
+    colors: Vec<Ticket>,
+}
+
+/// A section on the CPU.
+struct Strands {
+    positions: Vec<[f32; 4]>,
+    colors: Vec<[f32; 4]>,
+    thickness: Vec<f32>,
+}
+
+/// Draws the frame that was simulated last, and says how long it took and how exact it is.
+pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Result<RgbImage> {
+    let mut list = PassList::new();
+    let tickets = requests(&mut list, run, studio, args)?;
+    run.submit(&list)?;
+    studio.take_stock(run, tickets.counters)?;
+    let scene: Vec<DVec3> = texels(&run.fetch(tickets.color)?).map(|texel| texel.as_dvec4().truncate()).collect();
+    let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&run.fetch(tickets.depth)?);
+    let strands = strands(run, &tickets)?;
+    let begun = Instant::now();
+    let picture = trace(run, studio, args, &strands, &depth)?;
+    let error = picture.error().map_or_else(String::new, |error| {
+        format!("; error of sampling, estimated: {:.5} RMS, {:.3} at most", error.rms, error.max)
+    });
+    let stats = ReferenceStats {
+        samples: args.samples.get(),
+        seconds: begun.elapsed().as_secs_f64(),
+        rms_error: picture.error().map(|error| error.rms),
+        max_error: picture.error().map(|error| error.max),
+    };
+    println!("reference: {} samples a pixel, {:.1} s{error}", stats.samples, stats.seconds);
+    studio.drawn.reference = Some(stats);
+    Ok(developed(picture.over(&scene).into_iter().map(|pixel| pixel.as_vec3()), args.size))
+}
+
+/// Records the scene, and behind its read-back the hair, for its colours.
+fn requests(list: &mut PassList, run: &Run, studio: &mut Studio, args: &Render) -> Result<Tickets> {
+    studio.draw_scene(list, run.head(&args.scene))?;
+    let (color, depth) = (list.read_texture(studio.targets.color), list.read_texture(studio.targets.depth));
+    let counters = studio.draw_hair(list, run.sim.pose())?;
+    let positions = run.sim.read_positions(list);
+    let colors = studio.sections.iter().zip(run.sim.buffers()).map(|((strands, _), buffers)| {
+        list.read_buffer(strands.colors(), 0, 8 * u64::from(buffers.shape.strand_vertices()))
+    });
+    Ok(Tickets { color, depth, counters, positions, colors: colors.collect() })
+}
+
+fn strands(run: &mut Run, tickets: &Tickets) -> Result<Vec<Strands>> {
+    let mut sections = Vec::new();
+    for (index, (&positions, &colors)) in tickets.positions.iter().zip(&tickets.colors).enumerate() {
+        let groom = &run.groom.sections[index];
+        let thickness = groom.interleave(&groom.thickness);
+        let positions = bytemuck::pod_collect_to_vec(&run.fetch(positions)?);
+        let colors = texels(&run.fetch(colors)?).map(|color| color.to_array()).collect();
+        sections.push(Strands { positions, colors, thickness });
+    }
+    Ok(sections)
+}
+
+fn trace(run: &Run, studio: &Studio, args: &Render, strands: &[Strands], depth: &[f32]) -> Result<Picture> {
+    let pose = run.sim.pose();
+    let sections = run.groom.sections.iter().zip(&studio.sections).zip(strands);
+    let sections: Vec<_> = sections
+        .map(|((groom, (shaded, material)), strands)| {
+            let uniform = SectionDraw::new(shaded, material, pose).uniform();
+            Section {
+                shape: StrandShape::of(groom),
+                pose,
+                positions: &strands.positions,
+                colors: &strands.colors,
+                thickness: &strands.thickness,
+                fibre_radius: uniform.fibre_radius,
+                tip_width: uniform.tip_width,
+            }
+        })
+        .collect();
+    let truth = Truth::new(&studio.view, &sections, Some(depth))?;
+    let bar = Progress::new(0, "tile");
+    Ok(truth.render(args.samples, &|progress| bar.advance_of(progress.tiles)))
+}
