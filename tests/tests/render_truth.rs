@@ -54,7 +54,7 @@ fn strips_on_a_finer_and_finer_screen_come_to_the_picture_of_solids() {
 
 #[test]
 fn the_picture_of_the_gpu_is_near_the_truth() {
-    let Some(mut screen): Option<Screen> = screen(|setup| setup.technique.k = 16) else { return };
+    let Some(mut screen): Option<Screen> = screen(|setup| setup.ppll().k = 16) else { return };
     let groom = groom();
     let truth = traced(&screen.view, &screen.lights, &groom, 256);
     let difference = screen.hair(&[&groom]).difference(&truth);

@@ -3,19 +3,22 @@
 
 import package::grid::{GROUP, thread_index};
 import package::screen::view;
-import package::tiles::{CLASSES, Queue, SLICES, TilesUniform, tile_count};
+import package::tiles::{CLASSES, Queue, ROW, SLICES, tile_count};
 
-@group(0) @binding(1) var<uniform> tiles: TilesUniform;
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
 // Pixels with hair, a tile.
 @group(0) @binding(8) var<storage, read_write> hairy: array<u32>;
+
+// The grid of groups that takes a tile each.
+@group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
 
 // Where sums end, so that they never wrap. There is never room for more than MOST / GROUP references.
 const MOST: u32 = 0x40000000u;
 
 var<workgroup> group_references: atomic<u32>;
 var<workgroup> group_place: u32;
+var<workgroup> group_size: atomic<u32>;
 var<workgroup> class_sizes: array<atomic<u32>, CLASSES>;
 var<workgroup> class_places: array<u32, CLASSES>;
 
@@ -32,6 +35,16 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
+// The grid holds so many tiles more.
+fn lengthen(tiles: u32) {
+    if tiles > 0u {
+        let size = atomicAdd(&queue.size, tiles) + tiles;
+        atomicMax(&groups_of_tiles[0], min(size, ROW));
+        atomicMax(&groups_of_tiles[1], (size + ROW - 1u) / ROW);
+        atomicMax(&groups_of_tiles[2], 1u);
+    }
+}
+
 fn references_of(tile: u32) -> u32 {
     var sum = 0u;
     for (var slice = 0u; slice < SLICES; slice++) {
@@ -46,6 +59,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     let tile = thread_index(group, groups, lane);
     if lane == 0u {
         atomicStore(&group_references, 0u);
+        atomicStore(&group_size, 0u);
     }
     if lane < CLASSES {
         atomicStore(&class_sizes[lane], 0u);
@@ -61,10 +75,12 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     var position = 0u;
     if count > 0u {
         position = atomicAdd(&class_sizes[load_class], 1u);
+        atomicAdd(&group_size, 1u);
     }
     workgroupBarrier();
     if lane == 0u {
         group_place = request(atomicLoad(&group_references));
+        lengthen(atomicLoad(&group_size));
     }
     if lane < CLASSES {
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));

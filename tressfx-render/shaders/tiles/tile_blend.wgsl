@@ -1,6 +1,5 @@
-// The pixels of a tile, from front to back. A group takes one tile after the other, the heaviest first, and goes through its
-// slices in units: as many slices as should fill the list of fragments. The fragments of a unit are sorted by pixel and depth,
-// and blended; pixels that have become opaque take no more; the tile ends when all are closed.
+// The pixels of a tile, from front to back, one group a tile. It goes through the slices in units: as many slices as should
+// fill the list of fragments. The fragments of a unit are sorted by pixel and depth, and blended; pixels that have become opaque take no more; the tile ends when all are closed.
 //
 // A fragment belongs to the slice of its own depth, so that a segment that is referred to from several slices leaves each
 // fragment once. A unit with too many fragments blends nothing and is tried again with half of its slices, or half of the
@@ -13,13 +12,13 @@ import package::line::{fragment_at, is_drawn, line_of, middle_of, span_of};
 import package::screen::view;
 import package::segments::{paint_of, ribbon_of, segment_from, tiles};
 import package::sums::{average, optical_depth, transmittance_of, weighted};
-import package::tiles::{CLASSES, Queue, SLICES, TILE, distance_of, slice_of, tile_columns, tile_count};
+import package::tiles::{CLASSES, SLICES, WaitingTiles, TILE, distance_of, slice_of, tile_columns, tile_count};
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
 
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
 // The end of each slice of each tile, a slice after the other.
 @group(0) @binding(6) var<storage, read> bins: array<u32>;
-@group(0) @binding(7) var<storage, read_write> queue: Queue;
+@group(0) @binding(7) var<storage, read> queue: WaitingTiles;
 @group(0) @binding(8) var<storage, read> references: array<u32>;
 // Premultiplied colour and alpha as four half floats, a pixel.
 @group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
@@ -62,14 +61,11 @@ struct Front {
     transmittance: f32,
 }
 
-fn take_tile() -> vec2<u32> {
-    var rest = atomicAdd(&queue.taken, 1u);
-    if rest == 0u {
-        counters.wanted = atomicLoad(&queue.references);
-        counters.dropped = max(counters.wanted, tiles.capacity) - tiles.capacity;
-    }
+// The tile of a group: the heaviest come first.
+fn tile_of(group: u32) -> vec2<u32> {
+    var rest = group;
     for (var i = CLASSES; i > 0u; i--) {
-        let size = atomicLoad(&queue.sizes[i - 1u]);
+        let size = queue.sizes[i - 1u];
         if rest < size {
             return queue.tiles[(i - 1u) * tile_count() + rest];
         }
@@ -322,15 +318,18 @@ fn blend_tile(tile: vec2<u32>, lane: u32) {
 }
 
 @compute @workgroup_size(LANES)
-fn tile_blend(@builtin(local_invocation_index) lane: u32) {
-    loop {
-        if lane == 0u {
-            job = take_tile();
+fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+              @builtin(local_invocation_index) lane: u32) {
+    if lane == 0u {
+        let index = group.y * groups.x + group.x;
+        job = tile_of(index);
+        if index == 0u {
+            counters.wanted = queue.references;
+            counters.dropped = max(queue.references, tiles.capacity) - tiles.capacity;
         }
-        let tile = workgroupUniformLoad(&job);
-        if tile.x == NO_TILE {
-            break;
-        }
+    }
+    let tile = workgroupUniformLoad(&job);
+    if tile.x != NO_TILE {
         blend_tile(tile, lane);
     }
 }

@@ -29,15 +29,25 @@ struct TilesUniform {
     layouts: array<vec4<u32>, MAX_SECTIONS>,
 }
 
+// Groups in a row of the grid that blends tiles.
+const ROW: u32 = 32768u;
+
 // Tiles with references, by class. A tile is its number and its first reference.
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
-    // Tiles that have been given to a group.
-    taken: atomic<u32>,
-    unused: vec2<u32>,
+    // Tiles of all classes.
+    size: atomic<u32>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
+    tiles: array<vec2<u32>>,
+}
+
+// The same where nothing is added any more.
+struct WaitingTiles {
+    references: u32,
+    size: u32,
+    sizes: array<u32, CLASSES>,
     tiles: array<vec2<u32>>,
 }
 

@@ -19,9 +19,6 @@ const LIBRARY: &[Module] = &with_shared::<3, 15>([
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),
 ]);
 
-/// Groups of `tile_blend`: as many as a large device runs at once. Each takes one tile after the other.
-const BLEND_GROUPS: u32 = 2048;
-
 /// A lane of `tile_depth` takes a row of pixels.
 const TILES_OF_A_DEPTH_GROUP: u32 = GROUP / 8;
 
@@ -38,6 +35,7 @@ impl<K: Eq + std::hash::Hash> Pass<K> {
         Ok(Self { kernel, bound: Bound::new() })
     }
 
+    /// Runs over a grid.
     fn record(
         &mut self,
         list: &mut PassList,
@@ -174,6 +172,7 @@ impl Kernels {
             ("bins", memory.screen.bins.into()),
             ("queue", memory.screen.queue.into()),
             ("hairy", memory.screen.resolved.tiles.into()),
+            ("groups_of_tiles", memory.groups.into()),
         ];
         self.alloc.record(list, (view.index, ()), Grid::for_threads(tile_count(view.size), GROUP), &resources)
     }
@@ -199,7 +198,8 @@ impl Kernels {
             ("resolved", memory.screen.resolved.colors.into()),
             ("hairy", memory.screen.resolved.tiles.into()),
         ];
-        let groups = tile_count(view.size).min(BLEND_GROUPS);
-        self.blend.record(list, (view.index, scene_depth), Grid([groups, 1, 1]), &resources)
+        let bindings = self.blend.bound.get((view.index, scene_depth), || self.blend.kernel.bind(&resources))?;
+        list.compute_indirect(&self.blend.kernel, &bindings, memory.groups, 0);
+        Ok(())
     }
 }

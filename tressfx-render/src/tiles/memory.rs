@@ -1,6 +1,6 @@
 //! What tiles keep.
 
-use tressfx_core::backend::Backend;
+use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
@@ -16,7 +16,10 @@ use crate::views::MAX_VIEWS;
 const CLASSES: u64 = 16;
 
 /// Bytes of the queue before its tiles.
-const QUEUE_HEADER: u64 = 16 + 4 * CLASSES;
+const QUEUE_HEADER: u64 = 8 + 4 * CLASSES;
+
+/// Bytes of a grid of groups.
+const GROUPS_BYTES: u64 = 12;
 
 /// Vertices of all sections, before the eye.
 #[derive(Debug)]
@@ -106,6 +109,8 @@ pub(crate) struct Memory {
     pub(crate) vertices: Vertices,
     pub(crate) references: References,
     pub(crate) screen: Screen,
+    /// The grid of groups that blends tiles.
+    pub(crate) groups: BufferId,
     /// What is counted of each view.
     pub(crate) counters: ViewCounters,
     /// [`TilesUniform`] for counting and for storing, of each view.
@@ -123,6 +128,7 @@ impl Memory {
             vertices: Vertices::new(backend, 0)?,
             references: References::new(backend, most_references.min(1 << 16))?,
             screen: Screen::new(backend, size)?,
+            groups: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_groups", GROUPS_BYTES))?,
             counters: ViewCounters::new(backend)?,
             uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", 2 * MAX_VIEWS)?,
         })
@@ -159,6 +165,7 @@ impl Memory {
             + Resolved::bytes(self.screen.size)
             + Vertices::BYTES * self.vertices.count
             + References::BYTES * u64::from(self.references.count)
+            + GROUPS_BYTES
             + ViewCounters::BYTES
     }
 
@@ -166,5 +173,6 @@ impl Memory {
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         list.clear(self.screen.bins, 0, sizes(size)[0]);
         list.clear(self.screen.queue, 0, QUEUE_HEADER);
+        list.clear(self.groups, 0, GROUPS_BYTES);
     }
 }
