@@ -3,9 +3,8 @@
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, project};
 import package::screen::view;
-import package::tiles::TilesUniform;
+import package::tiles::tiles;
 
-@group(0) @binding(1) var<uniform> tiles: TilesUniform;
 // A point in the space of the eye and a radius, a vertex.
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 // Colour and opacity as four half floats, a vertex.

@@ -1,9 +1,9 @@
 // Each bin gets its place among the references, and each tile that has any waits in the queue, by the number of its references.
-// One thread a tile.
+// Eight lanes a tile, a part of its slices each.
 
-import package::grid::{GROUP, thread_index};
+import package::grid::GROUP;
 import package::screen::view;
-import package::tiles::{CLASSES, Queue, ROW, SLICES, tile_count};
+import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
@@ -13,12 +13,20 @@ import package::tiles::{CLASSES, Queue, ROW, SLICES, tile_count};
 // The grid of groups that takes a tile each.
 @group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
 
-// Where sums end, so that they never wrap. There is never room for more than MOST / GROUP references.
+// Nearness of the nearest vertex, a tile.
+@group(0) @binding(10) var<storage, read> nearests: array<f32>;
+
+const PARTS: u32 = 8u;
+const TILES: u32 = GROUP / PARTS;
+const SLICES_OF_A_LANE: u32 = SLICES / PARTS;
+// Where sums end, so that they never wrap. There is never room for more than MOST / TILES references.
 const MOST: u32 = 0x40000000u;
 
 var<workgroup> group_references: atomic<u32>;
 var<workgroup> group_place: u32;
 var<workgroup> group_size: atomic<u32>;
+var<workgroup> sums: array<u32, GROUP>;
+var<workgroup> tile_places: array<u32, TILES>;
 var<workgroup> class_sizes: array<atomic<u32>, CLASSES>;
 var<workgroup> class_places: array<u32, CLASSES>;
 
@@ -45,18 +53,12 @@ fn lengthen(tiles: u32) {
     }
 }
 
-fn references_of(tile: u32) -> u32 {
-    var sum = 0u;
-    for (var slice = 0u; slice < SLICES; slice++) {
-        sum = min(sum + min(bins[slice * tile_count() + tile], MOST), MOST);
-    }
-    return sum;
-}
-
 @compute @workgroup_size(GROUP)
 fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
               @builtin(local_invocation_index) lane: u32) {
-    let tile = thread_index(group, groups, lane);
+    let own = lane % TILES;
+    let part = lane / TILES;
+    let tile = (group.y * groups.x + group.x) * TILES + own;
     if lane == 0u {
         atomicStore(&group_references, 0u);
         atomicStore(&group_size, 0u);
@@ -64,16 +66,32 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     if lane < CLASSES {
         atomicStore(&class_sizes[lane], 0u);
     }
-    workgroupBarrier();
-    var count = 0u;
+    var in_bins: array<u32, SLICES_OF_A_LANE>;
+    var sum = 0u;
     if tile < tile_count() {
-        count = references_of(tile);
+        for (var i = 0u; i < SLICES_OF_A_LANE; i++) {
+            in_bins[i] = bins[(part * SLICES_OF_A_LANE + i) * tile_count() + tile];
+        }
+        for (var i = 0u; i < SLICES_OF_A_LANE; i++) {
+            sum = min(sum + min(in_bins[i], MOST), MOST);
+        }
     }
-    // A tile with more than this ends behind the last reference that there is room for.
-    let before = atomicAdd(&group_references, min(count, MOST / GROUP));
-    let load_class = min(firstLeadingBit(max(count, 1u)), CLASSES - 1u);
+    sums[lane] = sum;
+    workgroupBarrier();
+    // Of the slices before those of this lane, and of all.
+    var before = 0u;
+    var count = 0u;
+    for (var i = 0u; i < PARTS; i++) {
+        if i == part {
+            before = count;
+        }
+        count = min(count + sums[i * TILES + own], MOST);
+    }
+    let load_class = min(firstLeadingBit(max(count, 1u)) / 2u, CLASSES - 1u);
     var position = 0u;
-    if count > 0u {
+    if part == 0u && count > 0u {
+        // A tile with more than this ends behind the last reference that there is room for.
+        tile_places[own] = atomicAdd(&group_references, min(count, MOST / TILES));
         position = atomicAdd(&class_sizes[load_class], 1u);
         atomicAdd(&group_size, 1u);
     }
@@ -82,23 +100,27 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         group_place = request(atomicLoad(&group_references));
         lengthen(atomicLoad(&group_size));
     }
-    if lane < CLASSES {
+    if lane < CLASSES && atomicLoad(&class_sizes[lane]) > 0u {
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));
     }
     workgroupBarrier();
     if tile >= tile_count() {
         return;
     }
-    let first = group_place + before;
-    var place = first;
-    for (var slice = 0u; slice < SLICES; slice++) {
-        let in_bin = bins[slice * tile_count() + tile];
-        bins[slice * tile_count() + tile] = place;
-        place = min(place + min(in_bin, MOST), 2u * MOST);
-    }
-    if count > 0u {
-        queue.tiles[load_class * tile_count() + class_places[load_class] + position] = vec2(tile, first);
-    } else {
+    if part == 0u {
         hairy[tile] = 0u;
+    }
+    if count == 0u {
+        return;
+    }
+    let first = group_place + tile_places[own];
+    var place = first + before;
+    for (var i = 0u; i < SLICES_OF_A_LANE; i++) {
+        bins[(part * SLICES_OF_A_LANE + i) * tile_count() + tile] = place;
+        place = min(place + min(in_bins[i], MOST), 2u * MOST);
+    }
+    if part == 0u {
+        queue.tiles[load_class * tile_count() + class_places[load_class] + position] =
+            WaitingTile(tile, first, nearests[tile], 0u);
     }
 }

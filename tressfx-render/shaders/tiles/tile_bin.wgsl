@@ -6,29 +6,30 @@ import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
-import package::segments::{Segment, ribbon_of, segment_at, tiles};
-import package::tiles::{TILE, distance_of, slice_of, tile_columns, tile_count};
+import package::segments::{ribbon_of, segment_at};
+import package::tiles::{IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
 // Nearness of the scene, a tile.
 @group(0) @binding(6) var<storage, read> depths: array<f32>;
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
-// The first vertex of a segment.
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
+// Nearness of the nearest vertex, a tile.
+@group(0) @binding(9) var<storage, read> nearests: array<f32>;
 
 // Pixels, and share of a distance, by which a part of a ribbon is taken larger than it is: more than rounding can move a
 // fragment.
 const PIXEL_MARGIN: f32 = 0.02;
 const DISTANCE_MARGIN: f32 = 4e-6;
 
-fn refer(bin: u32, vertex: u32) {
+fn refer(bin: u32, reference: u32) {
     if tiles.stores == 0u {
         atomicAdd(&bins[bin], 1u);
         return;
     }
     let place = atomicAdd(&bins[bin], 1u);
     if place < tiles.capacity {
-        references[place] = vertex;
+        references[place] = reference;
     }
 }
 
@@ -43,14 +44,14 @@ fn range_of(ribbon: Ribbon, line: Line, span: Span, columns: vec2<i32>) -> vec2<
     return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
 }
 
-// The slices from nearest to farthest, a little more than there are.
-fn slices_of(nearness: vec2<f32>) -> vec2<u32> {
+// Distances of the nearest and the farthest, a little more than they are apart.
+fn distances_of(nearness: vec2<f32>) -> vec2<f32> {
     let distance = vec2(distance_of(nearness.y), distance_of(nearness.x));
     var margin = DISTANCE_MARGIN * distance;
     if view.lens.is_perspective == 0u {
         margin = vec2(DISTANCE_MARGIN / view.lens.nearness_slope);
     }
-    return vec2(slice_of(tiles, distance.x - margin.x), slice_of(tiles, distance.y + margin.y));
+    return vec2(distance.x - margin.x, distance.y + margin.y);
 }
 
 fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
@@ -64,15 +65,19 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         return;
     }
     let nearness = range_of(ribbon, line, span, columns);
-    let slices = slices_of(nearness);
+    let distances = distances_of(nearness);
     for (var row = first_row / edge; row <= last_row / edge; row++) {
         let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
         let tile = place.y * tile_columns() + place.x;
         if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
             continue;
         }
-        for (var slice = slices.x; slice <= slices.y; slice++) {
-            refer(slice * tile_count() + tile, vertex);
+        let begin = begin_of(nearests[tile]);
+        let last = slice_of(begin, distances.y);
+        var flag = IS_NEAREST;
+        for (var slice = slice_of(begin, distances.x); slice <= last; slice++) {
+            refer(slice * tile_count() + tile, vertex | flag);
+            flag = 0u;
         }
     }
 }

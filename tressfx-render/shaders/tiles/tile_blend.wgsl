@@ -10,9 +10,9 @@ import package::counters::Counters;
 import package::fragment::{Fragment, OPAQUE, depth_key, pack_color, packed_alpha, packed_color};
 import package::line::{fragment_at, is_drawn, line_of, middle_of, span_of};
 import package::screen::view;
-import package::segments::{paint_of, ribbon_of, segment_from, tiles};
+import package::segments::{paint_of, ribbon_of, segment_from};
 import package::sums::{average, optical_depth, transmittance_of, weighted};
-import package::tiles::{CLASSES, SLICES, WaitingTiles, TILE, distance_of, slice_of, tile_columns, tile_count};
+import package::tiles::{CLASSES, IS_NEAREST, SLICES, WaitingTile, WaitingTiles, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
 
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
@@ -32,12 +32,15 @@ const PIXELS: u32 = TILE * TILE;
 const NO_TILE: u32 = 0xffffffffu;
 // Fragments of a lane.
 const OWN: u32 = (ENTRIES + LANES - 1u) / LANES;
+// Keys by which a fragment may be out of the range of its ends.
+const KEYS: u32 = 16u;
 // The sums of a mean have room for this many white fragments of a pixel.
 const MOST_IN_MEAN: u32 = 16384u;
 const MEAN_UNIT: f32 = 256.0;
 
-// Tile and first reference.
-var<workgroup> job: vec2<u32>;
+var<workgroup> job: WaitingTile;
+// Distance at which the slices of the tile begin.
+var<workgroup> begin: f32;
 var<workgroup> plan: Unit;
 // Fragments that were found in the unit, whether or not there was room for them.
 var<workgroup> total: atomic<u32>;
@@ -62,7 +65,7 @@ struct Front {
 }
 
 // The tile of a group: the heaviest come first.
-fn tile_of(group: u32) -> vec2<u32> {
+fn tile_of(group: u32) -> WaitingTile {
     var rest = group;
     for (var i = CLASSES; i > 0u; i--) {
         let size = queue.sizes[i - 1u];
@@ -71,22 +74,7 @@ fn tile_of(group: u32) -> vec2<u32> {
         }
         rest -= size;
     }
-    return vec2(NO_TILE, 0u);
-}
-
-// The slice that a reference belongs to, of those of a unit.
-fn slice_at(reference: u32, unit: Unit) -> u32 {
-    var slice = unit.first;
-    var end = unit.end;
-    while end - slice > 1u {
-        let middle = (slice + end) / 2u;
-        if bounds[middle] <= reference {
-            slice = middle;
-        } else {
-            end = middle;
-        }
-    }
-    return slice;
+    return WaitingTile(NO_TILE, 0u, 0.0, 0u);
 }
 
 fn add_to_mean(pixel: u32, fragment: Fragment) {
@@ -101,9 +89,10 @@ fn add_to_mean(pixel: u32, fragment: Fragment) {
     atomicAdd(&sums[pixel][4], color.z);
 }
 
-fn keep(unit: Unit, slice: u32, pixel: u32, fragment: Fragment) {
+fn keep(unit: Unit, pixel: u32, fragment: Fragment) {
     let key = min(depth_key(fragment.nearness), LAST_KEY - 1u);
-    if key < unit.low || key >= unit.high || slice_of(tiles, distance_of(fragment.nearness)) != slice {
+    let slice = slice_of(begin, distance_of(fragment.nearness));
+    if key < unit.low || key >= unit.high || slice < unit.first || slice >= unit.end {
         return;
     }
     let entry = atomicAdd(&total, 1u);
@@ -118,13 +107,20 @@ fn keep(unit: Unit, slice: u32, pixel: u32, fragment: Fragment) {
 
 // What a reference leaves in the tile whose first pixel is `corner`; one column of SHARE.
 fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
-    let segment = segment_from(references[reference]);
-    let ribbon = ribbon_of(segment);
-    let line = line_of(ribbon);
-    if !is_drawn(ribbon, line) {
+    let found = references[reference];
+    // Once a unit: a segment is referred to from slices that follow each other.
+    if reference >= bounds[unit.first + 1u] && (found & IS_NEAREST) == 0u {
         return;
     }
-    let slice = slice_at(reference, unit);
+    let segment = segment_from(found & ~IS_NEAREST);
+    let ribbon = ribbon_of(segment);
+    let line = line_of(ribbon);
+    let nearest = depth_key(max(ribbon.nearness.x, ribbon.nearness.y));
+    let farthest = depth_key(min(ribbon.nearness.x, ribbon.nearness.y));
+    // Rounding may move a fragment out of the range of its ends by a few keys.
+    if !is_drawn(ribbon, line) || farthest + min(KEYS, LAST_KEY - farthest) < unit.low || nearest - min(KEYS, nearest) >= unit.high {
+        return;
+    }
     let paint = paint_of(segment);
     let span = span_of(ribbon, line);
     let first = select(vec2<i32>(corner), vec2<i32>(corner.yx), span.steep);
@@ -141,7 +137,7 @@ fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
             }
             let fragment = fragment_at(ribbon, line, paint, pixel);
             if fragment.alpha > 0u {
-                keep(unit, slice, own, fragment);
+                keep(unit, own, fragment);
             }
         }
     }
@@ -230,9 +226,9 @@ fn close(pixel: u32) {
     atomicOr(&closed[pixel / 32u], 1u << (pixel % 32u));
 }
 
-fn begin(tile: vec2<u32>, lane: u32, is_inside: bool) {
+fn prepare(tile: WaitingTile, lane: u32, is_inside: bool) {
     if lane < SLICES {
-        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.x], tiles.capacity);
+        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile], tiles.capacity);
     }
     if lane < 2u {
         atomicStore(&closed[lane], 0u);
@@ -244,7 +240,8 @@ fn begin(tile: vec2<u32>, lane: u32, is_inside: bool) {
         }
     }
     if lane == 0u {
-        bounds[0] = min(tile.y, tiles.capacity);
+        bounds[0] = min(tile.first, tiles.capacity);
+        begin = begin_of(tile.nearest);
         atomicStore(&total, 0u);
         atomicStore(&hairy_pixels, 0u);
     }
@@ -260,18 +257,18 @@ fn begin(tile: vec2<u32>, lane: u32, is_inside: bool) {
 // Chooses what comes next; one lane comes here, all others wait.
 fn go_on(unit: Unit, found: u32) {
     let is_closed = (atomicLoad(&closed[0]) & atomicLoad(&closed[1])) == 0xffffffffu;
-    plan = next_unit(tiles, unit, found);
+    plan = next_unit(begin, unit, found);
     if is_closed {
         plan.first = SLICES;
     }
     atomicStore(&total, 0u);
 }
 
-fn blend_tile(tile: vec2<u32>, lane: u32) {
-    let corner = vec2(tile.x % tile_columns(), tile.x / tile_columns()) * TILE;
+fn blend_tile(tile: WaitingTile, lane: u32) {
+    let corner = vec2(tile.tile % tile_columns(), tile.tile / tile_columns()) * TILE;
     let pixel = corner + vec2(lane % TILE, lane / TILE);
     let is_inside = lane < PIXELS && all(pixel < view.size);
-    begin(tile, lane, is_inside);
+    prepare(tile, lane, is_inside);
     var front = Front(vec3(0.0), 1.0);
     var fragments = 0u;
     loop {
@@ -311,7 +308,7 @@ fn blend_tile(tile: vec2<u32>, lane: u32) {
     workgroupBarrier();
     if lane == 0u {
         let pixels = atomicLoad(&hairy_pixels);
-        hairy[tile.x] = pixels;
+        hairy[tile.tile] = pixels;
         atomicAdd(&counters.pixels_with_hair, pixels);
         atomicAdd(&counters.fragments, fragments);
     }
@@ -329,7 +326,7 @@ fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         }
     }
     let tile = workgroupUniformLoad(&job);
-    if tile.x != NO_TILE {
+    if tile.tile != NO_TILE {
         blend_tile(tile, lane);
     }
 }

@@ -1,15 +1,43 @@
 // The vertices of a section before the eye, beside those of all other sections: so that one kernel can draw segments of all of
-// them. One thread a vertex.
+// them; and the nearest vertex of each tile. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
-import package::ribbon::is_sound;
+import package::ribbon::{End, is_sound, on_screen};
+import package::screen::view;
 import package::strands::{colors, end_at, positions, section};
+import package::tiles::{TILE, tile_columns};
 
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
 
+// Nearness, a tile: bits of a number that is not negative.
+@group(0) @binding(8) var<storage, read_write> nearests: array<atomic<u32>>;
+
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
+
+fn note_nearest(end: End) {
+    let distance = -end.point.z;
+    if distance < view.lens.near {
+        return;
+    }
+    var scale = 1.0;
+    var nearness = 1.0 - view.lens.nearness_slope * distance;
+    if view.lens.is_perspective == 1u {
+        scale = 1.0 / distance;
+        nearness = scale;
+    }
+    let pixel = on_screen(view.lens, end.point.xy, scale);
+    if all(pixel >= vec2(0.0)) && all(pixel < vec2<f32>(view.size)) && nearness > 0.0 {
+        let tile = vec2<u32>(pixel) / TILE;
+        let place = tile.y * tile_columns() + tile.x;
+        let bits = bitcast<u32>(nearness);
+        // Most vertices are not the nearest, and need no turn at the counter.
+        if bits > atomicLoad(&nearests[place]) {
+            atomicMax(&nearests[place], bits);
+        }
+    }
+}
 
 @compute @workgroup_size(GROUP)
 fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -19,6 +47,10 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     let end = end_at(i % section.strands, i / section.strands);
-    points[i] = select(NOWHERE, vec4(end.point, end.radius), is_sound(positions[i].xyz));
+    let sound = is_sound(positions[i].xyz);
+    points[i] = select(NOWHERE, vec4(end.point, end.radius), sound);
     paints[i] = colors[i];
+    if sound {
+        note_nearest(end);
+    }
 }

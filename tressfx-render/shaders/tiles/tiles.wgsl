@@ -7,8 +7,10 @@ const TILE: u32 = 8u;
 // Slices of depth; each holds references to the segments that touch it.
 const SLICES: u32 = 64u;
 // Kinds of tiles by the number of their references, the heaviest last.
-const CLASSES: u32 = 16u;
+const CLASSES: u32 = 8u;
 const MAX_SECTIONS: u32 = 64u;
+// Set in a reference from the nearest slice that the segment touches in the tile. The other bits are the segment's first vertex.
+const IS_NEAREST: u32 = 0x80000000u;
 
 struct TilesUniform {
     // Segments of all sections.
@@ -19,9 +21,9 @@ struct TilesUniform {
     capacity: u32,
     // 0 to count references, 1 to store them.
     stores: u32,
-    // Distance at which the first slice begins, and slices in a unit of distance.
+    // Distances between which hair is expected: the nearer one, and how much farther the other one is.
     nearest: f32,
-    slices_per_unit: f32,
+    depth: f32,
     // Transmittance of a pixel below which nothing more is seen.
     closed_below: f32,
     unused: u32,
@@ -29,26 +31,40 @@ struct TilesUniform {
     layouts: array<vec4<u32>, MAX_SECTIONS>,
 }
 
+@group(0) @binding(1) var<uniform> tiles: TilesUniform;
+
 // Groups in a row of the grid that blends tiles.
 const ROW: u32 = 32768u;
 
-// Tiles with references, by class. A tile is its number and its first reference.
+// A tile with references.
+struct WaitingTile {
+    tile: u32,
+    // The first reference.
+    first: u32,
+    // Nearness of the nearest vertex; 0 where there is none.
+    nearest: f32,
+    unused: u32,
+}
+
+// Tiles with references, by class.
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
     // Tiles of all classes.
     size: atomic<u32>,
+    unused: vec2<u32>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
-    tiles: array<vec2<u32>>,
+    tiles: array<WaitingTile>,
 }
 
 // The same where nothing is added any more.
 struct WaitingTiles {
     references: u32,
     size: u32,
+    unused: vec2<u32>,
     sizes: array<u32, CLASSES>,
-    tiles: array<vec2<u32>>,
+    tiles: array<WaitingTile>,
 }
 
 fn tile_columns() -> u32 {
@@ -73,7 +89,23 @@ fn nearness_at(distance: f32) -> f32 {
     return 1.0 - view.lens.nearness_slope * distance;
 }
 
-// The slice of a distance, from 0 to SLICES - 1. What lies before the first and behind the last belongs to them.
-fn slice_of(tiles: TilesUniform, distance: f32) -> u32 {
-    return u32(clamp((distance - tiles.nearest) * tiles.slices_per_unit, 0.0, f32(SLICES - 1u)));
+// Where the slices of a tile begin: `nearness` is that of its nearest vertex, or 0 where there is none.
+fn begin_of(nearness: f32) -> f32 {
+    if nearness <= 0.0 {
+        return tiles.nearest;
+    }
+    return clamp(distance_of(nearness), tiles.nearest, tiles.nearest + tiles.depth);
+}
+
+// The slice of a distance, from 0 to SLICES - 1, where the slices begin at `begin`. They are thin in front, where hair is seen,
+// and grow. What lies before the first and behind the last belongs to them.
+fn slice_of(begin: f32, distance: f32) -> u32 {
+    let part = max(distance - begin, 0.0) / tiles.depth;
+    return u32(min(f32(SLICES) * sqrt(part), f32(SLICES - 1u)));
+}
+
+// Where a slice begins.
+fn slice_distance(begin: f32, slice: u32) -> f32 {
+    let part = f32(slice) / f32(SLICES);
+    return begin + part * part * tiles.depth;
 }

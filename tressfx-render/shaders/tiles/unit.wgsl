@@ -1,7 +1,7 @@
 // What a group blends at once: slices of a tile, or a range of depths of one slice.
 
 import package::fragment::depth_key;
-import package::tiles::{SLICES, TilesUniform, nearness_at};
+import package::tiles::{SLICES, nearness_at, slice_distance};
 
 // Fragments that a group has room for.
 const ENTRIES: u32 = 704u;
@@ -40,44 +40,44 @@ fn unit_from(first: u32, rate: f32) -> Unit {
     return Unit(first, end, 0u, LAST_KEY, rate, 0u);
 }
 
-fn first_key(tiles: TilesUniform, slice: u32) -> u32 {
+fn first_key(begin: f32, slice: u32) -> u32 {
     if slice == 0u {
         return 0u;
     }
-    return depth_key(nearness_at(tiles.nearest + f32(slice) / tiles.slices_per_unit));
+    return depth_key(nearness_at(slice_distance(begin, slice)));
 }
 
-fn end_key(tiles: TilesUniform, slice: u32) -> u32 {
+fn end_key(begin: f32, slice: u32) -> u32 {
     if slice == SLICES - 1u {
         return LAST_KEY;
     }
-    return first_key(tiles, slice + 1u);
+    return first_key(begin, slice + 1u);
 }
 
 // The unit behind one that has been blended.
-fn behind(tiles: TilesUniform, unit: Unit, rate: f32) -> Unit {
+fn behind(begin: f32, unit: Unit, rate: f32) -> Unit {
     if unit.high == LAST_KEY {
         return unit_from(unit.end, rate);
     }
-    let step = unit.high - max(min(first_key(tiles, unit.first), unit.high), unit.low);
+    let step = unit.high - max(min(first_key(begin, unit.first), unit.high), unit.low);
     let room = LAST_KEY - unit.high;
     var high = unit.high + min(2u * min(step, LAST_KEY / 2u) + 1u, room);
-    if high >= end_key(tiles, unit.first) {
+    if high >= end_key(begin, unit.first) {
         high = LAST_KEY;
     }
     return Unit(unit.first, unit.end, unit.high, high, rate, 0u);
 }
 
 // Half of a unit that had too many fragments.
-fn half_of(tiles: TilesUniform, unit: Unit, rate: f32) -> Unit {
+fn half_of(begin: f32, unit: Unit, rate: f32) -> Unit {
     if unit.end - unit.first > 1u {
         return Unit(unit.first, unit.first + (unit.end - unit.first) / 2u, 0u, LAST_KEY, rate, 0u);
     }
     if unit.high - unit.low <= 1u {
         return Unit(unit.first, unit.end, unit.low, unit.high, rate, 1u);
     }
-    var low = max(unit.low, first_key(tiles, unit.first));
-    var high = min(unit.high, end_key(tiles, unit.first));
+    var low = max(unit.low, first_key(begin, unit.first));
+    var high = min(unit.high, end_key(begin, unit.first));
     if low >= high {
         low = unit.low;
         high = unit.high;
@@ -87,14 +87,14 @@ fn half_of(tiles: TilesUniform, unit: Unit, rate: f32) -> Unit {
 }
 
 // What comes after a unit in which so many fragments were found.
-fn next_unit(tiles: TilesUniform, unit: Unit, found: u32) -> Unit {
+fn next_unit(begin: f32, unit: Unit, found: u32) -> Unit {
     var rate = unit.rate;
     if unit.high == LAST_KEY && unit.low == 0u {
         let references = bounds[unit.end] - bounds[unit.first];
         rate = max(f32(found) / f32(max(references, 1u)), LEAST_RATE);
     }
     if found > ENTRIES && unit.is_mean == 0u {
-        return half_of(tiles, unit, rate);
+        return half_of(begin, unit, rate);
     }
-    return behind(tiles, unit, rate);
+    return behind(begin, unit, rate);
 }

@@ -19,8 +19,8 @@ const LIBRARY: &[Module] = &with_shared::<3, 15>([
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),
 ]);
 
-/// A lane of `tile_depth` takes a row of pixels.
-const TILES_OF_A_DEPTH_GROUP: u32 = GROUP / 8;
+/// Lanes that share a tile: a row of pixels each in `tile_depth`, a part of the slices in `tile_alloc`.
+const LANES_OF_A_TILE: u32 = 8;
 
 /// A kernel and its bindings by view, and by what else it may differ in.
 #[derive(Debug)]
@@ -126,6 +126,7 @@ impl Kernels {
             ("thickness", strands.buffers.thickness.into()),
             ("points", memory.vertices.points.range(16 * first_vertex, 16 * vertices)),
             ("paints", memory.vertices.paints.range(8 * first_vertex, 8 * vertices)),
+            ("nearests", memory.screen.nearests.into()),
         ];
         let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
         self.points.record(list, (view.index, (strands.colors, first)), grid, &resources)
@@ -141,8 +142,8 @@ impl Kernels {
     ) -> Result<()> {
         let resources =
             [("view", view.uniform), ("scene_depth", scene_depth.into()), ("depths", memory.screen.depths.into())];
-        let groups = tile_count(view.size).div_ceil(TILES_OF_A_DEPTH_GROUP);
-        self.depth.record(list, (view.index, scene_depth), Grid::for_threads(groups, 1), &resources)
+        let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
+        self.depth.record(list, (view.index, scene_depth), grid, &resources)
     }
 
     /// The references of each bin: counted, or stored.
@@ -161,6 +162,7 @@ impl Kernels {
             ("depths", memory.screen.depths.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
+            ("nearests", memory.screen.nearests.into()),
         ];
         self.bin.record(list, (view.index, stores), Grid::for_threads(segments, GROUP), &resources)
     }
@@ -173,8 +175,10 @@ impl Kernels {
             ("queue", memory.screen.queue.into()),
             ("hairy", memory.screen.resolved.tiles.into()),
             ("groups_of_tiles", memory.groups.into()),
+            ("nearests", memory.screen.nearests.into()),
         ];
-        self.alloc.record(list, (view.index, ()), Grid::for_threads(tile_count(view.size), GROUP), &resources)
+        let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
+        self.alloc.record(list, (view.index, ()), grid, &resources)
     }
 
     /// The pixels.

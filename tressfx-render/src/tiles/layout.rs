@@ -31,10 +31,10 @@ gpu_struct! {
         pub capacity: u32,
         /// 0 to count references, 1 to store them.
         pub stores: u32,
-        /// Distance at which the first slice begins.
+        /// Distance at which hair is expected to begin.
         pub nearest: f32,
-        /// Slices in a unit of distance.
-        pub slices_per_unit: f32,
+        /// How much farther it is expected to end.
+        pub depth: f32,
         /// Transmittance of a pixel below which nothing more is seen.
         pub closed_below: f32,
         /// Nothing.
@@ -99,7 +99,7 @@ impl Layout {
             capacity,
             stores,
             nearest,
-            slices_per_unit: SLICES as f32 / (farthest - nearest),
+            depth: farthest - nearest,
             closed_below: desc.closed_below,
             unused: 0,
             layouts: self.sections,
