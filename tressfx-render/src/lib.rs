@@ -4,6 +4,7 @@
 //! ```text
 //! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
 //! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
+//! hair.render.fill_raster raster two triangles a strand segment: the same, instead of fill            Technique::Ppll
 //! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
 //! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        every technique
 //!
@@ -40,7 +41,7 @@ mod visibility;
 pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{K_RANGE, PpllDesc};
+pub use ppll::{Fill, K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
 pub use shaders::VIEW_MODULE;

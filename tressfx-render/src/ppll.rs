@@ -1,15 +1,17 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
 mod fill;
+mod fill_raster;
 mod pool;
 mod resolve;
 
 use tressfx_core::backend::{Backend, Format};
 use tressfx_core::error::{Need, Result};
-use tressfx_core::id::BufferId;
+use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Module;
 
+use crate::bound::Bound;
 use crate::composite::Composite;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels};
@@ -29,6 +31,18 @@ const LIBRARY: &[Module] = &with_shared::<2, 12>([
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
 
+/// What turns segments of strands into fragments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fill {
+    /// A compute pass: each thread walks the pixels of a segment, and a group asks the pool for nodes at once.
+    #[default]
+    Compute,
+    /// A raster pass: a quad covers each segment, and each fragment asks the pool for a node. The picture is the same. The
+    /// device must let fragment shaders write buffers ([`Need::FragmentWrites`]).
+    Raster,
+}
+
 /// Lists of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -40,6 +54,8 @@ pub struct PpllDesc {
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
     pub count_limit: u32,
+    /// What fills the lists.
+    pub fill: Fill,
 }
 
 impl PpllDesc {
@@ -61,6 +77,12 @@ impl PpllDesc {
         Self { count_limit, ..self }
     }
 
+    /// The same, filled in another way.
+    #[must_use]
+    pub fn fill(self, fill: Fill) -> Self {
+        Self { fill, ..self }
+    }
+
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
@@ -69,7 +91,7 @@ impl PpllDesc {
 impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
-        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT }
+        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT, fill: Fill::Compute }
     }
 }
 
@@ -84,7 +106,7 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
-    fill: fill::Fill,
+    fill: Filler,
     resolve: resolve::Resolve,
     composite: Composite,
     pool: NodePool,
@@ -98,7 +120,7 @@ impl Ppll {
         Ok(Self {
             desc: *desc,
             size,
-            fill: fill::Fill::new(backend)?,
+            fill: Filler::new(backend, desc.fill, target)?,
             resolve: resolve::Resolve::new(backend, desc.k)?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
@@ -107,14 +129,14 @@ impl Ppll {
     }
 
     fn forget_bindings(&mut self) {
-        self.fill.bound.clear();
+        self.fill.bound().clear();
         self.resolve.bound.clear();
         self.composite.bound.clear();
     }
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
-        [&self.fill.kernel.shader, &self.resolve.kernel.shader, &self.composite.pipeline.shader]
+        [self.fill.shader(), &self.resolve.kernel.shader, &self.composite.pipeline.shader]
     }
 }
 
@@ -149,7 +171,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
-        self.fill.bound.begin_frame();
+        self.fill.bound().begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
@@ -158,11 +180,54 @@ impl TechniqueInstance for Ppll {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
-        for draw in draws {
-            self.fill.pass(list, view, draw, &self.pool, targets.depth)?;
-        }
+        self.fill.passes(list, view, draws, &self.pool, targets)?;
         self.resolve.pass(list, view, &self.pool, &self.resolved)?;
         self.composite.pass(list, view, &self.resolved, targets.color)
+    }
+}
+
+/// What fills the lists.
+#[derive(Debug)]
+enum Filler {
+    Compute(fill::Fill),
+    Raster(fill_raster::FillRaster),
+}
+
+impl Filler {
+    fn new(backend: &mut dyn Backend, fill: Fill, target: Format) -> Result<Self> {
+        match fill {
+            Fill::Compute => fill::Fill::new(backend).map(Self::Compute),
+            Fill::Raster => fill_raster::FillRaster::new(backend, target).map(Self::Raster),
+        }
+    }
+
+    fn bound(&mut self) -> &mut Bound<(usize, BufferId, TextureId)> {
+        match self {
+            Self::Compute(fill) => &mut fill.bound,
+            Self::Raster(fill) => &mut fill.bound,
+        }
+    }
+
+    fn passes(
+        &mut self,
+        list: &mut PassList,
+        view: &BoundView,
+        draws: &[SectionDraw],
+        pool: &NodePool,
+        targets: &Targets,
+    ) -> Result<()> {
+        match self {
+            Self::Compute(fill) => draws.iter().try_for_each(|draw| fill.pass(list, view, draw, pool, targets.depth)),
+            Self::Raster(fill) => fill.pass(list, view, draws, pool, targets),
+        }
+    }
+
+    #[cfg(test)]
+    fn shader(&self) -> &tressfx_core::shader::Shader {
+        match self {
+            Self::Compute(fill) => &fill.kernel.shader,
+            Self::Raster(fill) => &fill.pipeline.shader,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{K_RANGE, PpllDesc, ShortCutDesc, Technique};
+use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Technique};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -17,6 +17,26 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
+    /// With `--oit ppll`: what turns segments of strands into fragments; the picture is the same
+    #[arg(long, value_enum, default_value_t = FillName::Compute)]
+    fill: FillName,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FillName {
+    /// Compute passes
+    Compute,
+    /// Fragment shaders
+    Raster,
+}
+
+impl FillName {
+    fn fill(self) -> Fill {
+        match self {
+            Self::Compute => Fill::Compute,
+            Self::Raster => Fill::Raster,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -33,10 +53,13 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
+        if self.fill == FillName::Raster && self.oit != OitName::Ppll {
+            bail!("--fill raster belongs to --oit ppll");
+        }
         match self.oit {
             OitName::Ppll => {
                 let desc = PpllDesc::default();
-                Ok(desc.k(self.k(desc.k, &K_RANGE)?).into())
+                Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
             }
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();

@@ -8,6 +8,9 @@ import package::ribbon::{Ribbon, along};
 import package::sink::{Sink, take};
 import package::strands::{Paint, scene_depth, view};
 
+// The square of a length in pixels: a shorter segment has no direction and leaves nothing.
+const SHORTEST: f32 = 1e-12;
+
 // The line through the middle of a ribbon.
 struct Line {
     delta: vec2<f32>,
@@ -45,7 +48,7 @@ fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fr
 // Visits the pixels that the ribbon may touch, column by column along the axis that it follows most.
 fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
     let line = line_of(ribbon);
-    if !ribbon.visible || line.square < 1e-12 {
+    if !ribbon.visible || line.square < SHORTEST {
         return;
     }
     let steep = abs(line.delta.y) > abs(line.delta.x);

@@ -13,13 +13,11 @@ use crate::shaders::{GROUP, compute};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-/// View, section and scene.
-type Key = (usize, BufferId, TextureId);
-
 #[derive(Debug)]
 pub(crate) struct Fill {
     pub(crate) kernel: Kernel,
-    pub(crate) bound: Bound<Key>,
+    /// By view, section and scene.
+    pub(crate) bound: Bound<(usize, BufferId, TextureId)>,
 }
 
 impl Fill {
@@ -39,13 +37,7 @@ impl Fill {
     ) -> Result<()> {
         let strands = draw.strands;
         let bindings = self.bound.get((view.index, strands.colors, scene_depth), || {
-            let own = [
-                ("pool", pool.uniform.into()),
-                ("heads", pool.heads.into()),
-                ("nodes", pool.nodes.into()),
-                ("counters", pool.counters.of(view.index).into()),
-            ];
-            self.kernel.bind(&[&strands.bindings(view, scene_depth)[..], &own].concat())
+            self.kernel.bind(&[&strands.bindings(view, scene_depth)[..], &pool.bindings(view)].concat())
         })?;
         list.compute(&self.kernel, &bindings, Grid::for_threads(strands.buffers.shape.segments(), GROUP));
         Ok(())
