@@ -95,7 +95,14 @@ fn what_has_no_file_has_its_defaults_too() {
                 ("fill", format!("Fill::{fill:?}")),
             ],
         ),
-        ("ShortCut", &[("k", shortcut.k.to_string()), ("ordered", shortcut.ordered.to_string())]),
+        (
+            "ShortCut",
+            &[
+                ("k", shortcut.k.to_string()),
+                ("ordered", shortcut.ordered.to_string()),
+                ("fill", format!("Fill::{:?}", shortcut.fill)),
+            ],
+        ),
     ];
     for (heading, expected) in tables {
         let rows = rows(heading);
@@ -140,11 +147,13 @@ fn everything() -> PassList {
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let lights = Lights::default();
-    let techniques: [Technique; 4] = [
+    let techniques: [Technique; 6] = [
         PpllDesc::default().into(),
         PpllDesc::default().fill(Fill::Raster).into(),
         ShortCutDesc::default().into(),
         ShortCutDesc::default().ordered(true).into(),
+        ShortCutDesc::default().fill(Fill::Raster).into(),
+        ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
     ];
     for technique in techniques {
         let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);

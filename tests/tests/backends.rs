@@ -105,11 +105,12 @@ fn built_in_grooms_are_the_same_on_both_backends() {
 #[test]
 fn every_technique_is_the_same_on_both_backends() {
     let shortcut = ShortCutDesc::default();
-    let techniques: [(&str, Technique); 6] = [
+    let techniques: [(&str, Technique); 7] = [
         ("raster fill", PpllDesc::default().fill(Fill::Raster).into()),
         ("mean of 1", shortcut.k(1).into()),
         ("mean of 3", shortcut.into()),
         ("mean of 8", shortcut.k(8).into()),
+        ("mean of 3, raster fill", shortcut.fill(Fill::Raster).into()),
         ("3 in order", shortcut.ordered(true).into()),
         ("8 in order", shortcut.k(8).ordered(true).into()),
     ];

@@ -1,4 +1,4 @@
-//! Lists that fragment shaders fill hold what the compute pass puts into them.
+//! Fragment shaders leave the fragments that the compute passes leave.
 
 mod support;
 
@@ -9,7 +9,7 @@ use tressfx_core::backend::{Caps, Format};
 use tressfx_core::error::{Error, Need};
 use tressfx_core::null::NullBackend;
 use tressfx_core::view::{View, Viewport};
-use tressfx_render::{Counters, Fill, HairRenderer, Material, PpllDesc, RenderDesc};
+use tressfx_render::{Counters, Fill, HairRenderer, Material, PpllDesc, RenderDesc, ShortCutDesc, Technique};
 
 use support::screen;
 
@@ -21,13 +21,31 @@ fn material(radius: f32) -> Material {
     })
 }
 
+/// The techniques that can be filled in either way.
+fn techniques() -> [Technique; 3] {
+    let shortcut = ShortCutDesc::default();
+    [PpllDesc::default().into(), shortcut.into(), shortcut.ordered(true).k(8).into()]
+}
+
+fn with_fill(technique: Technique, fill: Fill) -> Technique {
+    match technique {
+        Technique::Ppll(desc) => desc.fill(fill).into(),
+        Technique::ShortCut(desc) => desc.fill(fill).into(),
+        other => panic!("{other:?} has one way"),
+    }
+}
+
 /// The same picture by either way.
-fn both(change: impl Fn(&mut Setup), draw: impl Fn(&mut Screen) -> Picture) -> Option<[Picture; 2]> {
+fn both(
+    technique: Technique,
+    change: &dyn Fn(&mut Setup),
+    draw: &dyn Fn(&mut Screen) -> Picture,
+) -> Option<[Picture; 2]> {
     let mut pictures = Vec::new();
     for fill in [Fill::Compute, Fill::Raster] {
         let mut screen = screen(|setup| {
             change(setup);
-            setup.ppll().fill = fill;
+            setup.technique = with_fill(technique, fill);
         })?;
         let many = Counters { fragments: 2_000_000, ..Counters::default() };
         screen.renderer.grow_to_measured(&mut *screen.backend, &many).unwrap();
@@ -38,11 +56,13 @@ fn both(change: impl Fn(&mut Setup), draw: impl Fn(&mut Screen) -> Picture) -> O
 
 /// Holds the one against the other.
 fn hold(name: &str, change: impl Fn(&mut Setup), draw: impl Fn(&mut Screen) -> Picture) {
-    let Some([compute, raster]) = both(change, draw) else { return };
-    eprintln!("{name}: {:?}", compute.counters);
-    assert!(compute.counters.fragments > 0 && compute.counters.dropped == 0, "{name}");
-    assert_eq!(compute.counters, raster.counters, "{name}");
-    assert!(compute.bytes == raster.bytes, "{name}");
+    for technique in techniques() {
+        let Some([compute, raster]) = both(technique, &change, &draw) else { return };
+        eprintln!("{name}: {:?}", compute.counters);
+        assert!(compute.counters.fragments > 0 && compute.counters.dropped == 0, "{name}, {technique:?}");
+        assert_eq!(compute.counters, raster.counters, "{name}, {technique:?}");
+        assert!(compute.bytes == raster.bytes, "{name}, {technique:?}");
+    }
 }
 
 #[test]
@@ -104,6 +124,31 @@ fn sections_and_a_scene_and_parts_of_a_target() {
 }
 
 #[test]
+fn strands_that_no_groom_should_hold_are_left_out_alike() {
+    let whole = Groom::wavy(30, 8, 1, material(0.005));
+    for bad in [f32::NAN, f32::INFINITY, 3e38, -1e13, 1e6] {
+        let mut groom = whole.clone();
+        // One vertex in the middle of strand 4, one at the tip of strand 9, one at the root of strand 11.
+        for (strand, vertex) in [(4, 3), (9, 7), (11, 0)] {
+            groom.positions[vertex * 30 + strand][1] = bad;
+        }
+        // A strand that is a point.
+        for vertex in 0..8 {
+            groom.positions[vertex * 30 + 20] = groom.positions[20];
+        }
+        hold(
+            &format!("{bad}"),
+            |_| (),
+            |screen| {
+                let picture = screen.hair(&[&groom]);
+                assert!(picture.pixels().iter().all(|pixel| pixel.is_finite()), "{bad}");
+                picture
+            },
+        );
+    }
+}
+
+#[test]
 fn a_full_pool_and_a_full_counter_are_harmless() {
     let groom = Groom::wavy(400, 16, 1, material(0.005));
     let Some(mut roomy) = screen(|setup| setup.ppll().fill = Fill::Raster) else { return };
@@ -142,15 +187,18 @@ fn a_device_whose_fragment_shaders_write_nothing_says_so() {
     let mut caps = Caps::webgpu_default();
     caps.fragment_writes = false;
     let mut backend = NullBackend::new(caps);
-    let make = |backend: &mut NullBackend, fill| {
-        let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(PpllDesc::default().fill(fill));
-        HairRenderer::new(backend, &desc)
+    let mut make = |technique, fill| {
+        let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(with_fill(technique, fill));
+        HairRenderer::new(&mut backend, &desc)
     };
-    let error = make(&mut backend, Fill::Raster).unwrap_err();
-    assert!(matches!(error, Error::Unsupported { need: Need::FragmentWrites, .. }), "{error}");
-    assert_eq!(
-        error.to_string(),
-        "hair.render.fill_raster: needs fragment shaders that write storage buffers, the device has none"
-    );
-    make(&mut backend, Fill::Compute).unwrap();
+    for (technique, label) in
+        techniques().into_iter().zip(["fill_raster", "shortcut_depths_raster", "shortcut_depths_raster"])
+    {
+        let error = make(technique, Fill::Raster).unwrap_err();
+        assert!(matches!(error, Error::Unsupported { need: Need::FragmentWrites, .. }), "{error}");
+        let said =
+            format!("hair.render.{label}: needs fragment shaders that write storage buffers, the device has none");
+        assert_eq!(error.to_string(), said);
+        make(technique, Fill::Compute).unwrap();
+    }
 }

@@ -47,8 +47,12 @@ fn the_validation_layer_has_nothing_to_say_about_600_frames() {
 #[test]
 fn the_validation_layer_has_nothing_to_say_about_any_technique() {
     let shortcut = ShortCutDesc::default();
-    let techniques: [Technique; 3] =
-        [PpllDesc::default().fill(Fill::Raster).into(), shortcut.into(), shortcut.k(8).ordered(true).into()];
+    let techniques: [Technique; 4] = [
+        PpllDesc::default().fill(Fill::Raster).into(),
+        shortcut.into(),
+        shortcut.fill(Fill::Raster).into(),
+        shortcut.k(8).ordered(true).into(),
+    ];
     for technique in techniques {
         let Some(backend) = vulkan(&watched()) else { return };
         let scene = Scene { technique, ..Scene::builtin("wavy:120:16", SIZE) };

@@ -4,13 +4,15 @@
 //! ```text
 //! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
 //! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
-//! hair.render.fill_raster raster two triangles a strand segment: the same, instead of fill            Technique::Ppll
 //! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
 //! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        every technique
 //!
 //! hair.render.shortcut_depths   compute  one thread a strand segment: the K nearest depths of pixels       Technique::ShortCut
 //! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the Kth depth        Technique::ShortCut
 //! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                       Technique::ShortCut
+//!
+//! hair.render.fill_raster, hair.render.shortcut_depths_raster, hair.render.shortcut_colors_raster
+//!                        raster   two triangles a strand segment: what the compute pass does          Fill::Raster
 //! ```
 //!
 //! The last column says what writes the pass. This crate writes passes into a [`PassList`](tressfx_core::pass::PassList). It
@@ -29,6 +31,7 @@ mod predict;
 pub mod reference;
 mod renderer;
 mod resolved;
+mod segments;
 mod shade;
 mod shaders;
 mod shortcut;
@@ -41,9 +44,10 @@ mod visibility;
 pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{Fill, K_RANGE, PpllDesc};
+pub use ppll::{K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
+pub use segments::Fill;
 pub use shaders::VIEW_MODULE;
 pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};

@@ -1,20 +1,19 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
 mod fill;
-mod fill_raster;
 mod pool;
 mod resolve;
 
 use tressfx_core::backend::{Backend, Format};
 use tressfx_core::error::{Need, Result};
-use tressfx_core::id::{BufferId, TextureId};
+use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::Module;
+use tressfx_core::shader::{Module, Specialization};
 
-use crate::bound::Bound;
 use crate::composite::Composite;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels};
+use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{TechniqueInstance, check_k};
@@ -26,22 +25,10 @@ pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 12>([
+const LIBRARY: &[Module] = &with_shared::<2, 13>([
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
-
-/// What turns segments of strands into fragments.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Fill {
-    /// A compute pass: each thread walks the pixels of a segment, and a group asks the pool for nodes at once.
-    #[default]
-    Compute,
-    /// A raster pass: a quad covers each segment, and each fragment asks the pool for a node. The picture is the same. The
-    /// device must let fragment shaders write buffers ([`Need::FragmentWrites`]).
-    Raster,
-}
 
 /// Lists of fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,7 +93,7 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
-    fill: Filler,
+    fill: Segments,
     resolve: resolve::Resolve,
     composite: Composite,
     pool: NodePool,
@@ -120,7 +107,7 @@ impl Ppll {
         Ok(Self {
             desc: *desc,
             size,
-            fill: Filler::new(backend, desc.fill, target)?,
+            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &Specialization::new(), target)?,
             resolve: resolve::Resolve::new(backend, desc.k)?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
@@ -129,7 +116,7 @@ impl Ppll {
     }
 
     fn forget_bindings(&mut self) {
-        self.fill.bound().clear();
+        self.fill.forget_bindings();
         self.resolve.bound.clear();
         self.composite.bound.clear();
     }
@@ -171,7 +158,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
-        self.fill.bound().begin_frame();
+        self.fill.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
@@ -180,54 +167,9 @@ impl TechniqueInstance for Ppll {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
-        self.fill.passes(list, view, draws, &self.pool, targets)?;
+        self.fill.passes(list, view, draws, targets, &self.pool.bindings(view))?;
         self.resolve.pass(list, view, &self.pool, &self.resolved)?;
         self.composite.pass(list, view, &self.resolved, targets.color)
-    }
-}
-
-/// What fills the lists.
-#[derive(Debug)]
-enum Filler {
-    Compute(fill::Fill),
-    Raster(fill_raster::FillRaster),
-}
-
-impl Filler {
-    fn new(backend: &mut dyn Backend, fill: Fill, target: Format) -> Result<Self> {
-        match fill {
-            Fill::Compute => fill::Fill::new(backend).map(Self::Compute),
-            Fill::Raster => fill_raster::FillRaster::new(backend, target).map(Self::Raster),
-        }
-    }
-
-    fn bound(&mut self) -> &mut Bound<(usize, BufferId, TextureId)> {
-        match self {
-            Self::Compute(fill) => &mut fill.bound,
-            Self::Raster(fill) => &mut fill.bound,
-        }
-    }
-
-    fn passes(
-        &mut self,
-        list: &mut PassList,
-        view: &BoundView,
-        draws: &[SectionDraw],
-        pool: &NodePool,
-        targets: &Targets,
-    ) -> Result<()> {
-        match self {
-            Self::Compute(fill) => draws.iter().try_for_each(|draw| fill.pass(list, view, draw, pool, targets.depth)),
-            Self::Raster(fill) => fill.pass(list, view, draws, pool, targets),
-        }
-    }
-
-    #[cfg(test)]
-    fn shader(&self) -> &tressfx_core::shader::Shader {
-        match self {
-            Self::Compute(fill) => &fill.kernel.shader,
-            Self::Raster(fill) => &fill.pipeline.shader,
-        }
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
-    /// With `--oit ppll`: what turns segments of strands into fragments; the picture is the same
+    /// What turns segments of strands into fragments; the picture is the same
     #[arg(long, value_enum, default_value_t = FillName::Compute)]
     fill: FillName,
 }
@@ -53,9 +53,6 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
-        if self.fill == FillName::Raster && self.oit != OitName::Ppll {
-            bail!("--fill raster belongs to --oit ppll");
-        }
         match self.oit {
             OitName::Ppll => {
                 let desc = PpllDesc::default();
@@ -64,7 +61,7 @@ impl Oit {
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
-                Ok(desc.k(k).ordered(self.oit_ordered).into())
+                Ok(desc.k(k).ordered(self.oit_ordered).fill(self.fill.fill()).into())
             }
         }
     }

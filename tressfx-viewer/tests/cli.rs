@@ -97,7 +97,6 @@ fn bad_words_are_refused_by_name() {
     assert!(words(&["--oit-k", "17"]).0.contains("--oit-k 17: it must be from 1 to 16"));
     assert!(words(&["--oit", "shortcut", "--oit-k", "9"]).0.contains("--oit-k 9: it must be from 1 to 8"));
     assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
-    assert!(words(&["--oit", "shortcut", "--fill", "raster"]).0.contains("--oit ppll"));
     assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
 }
@@ -159,7 +158,11 @@ fn each_technique_draws_the_hair_and_says_what_it_takes() {
     for (k, ordered, bytes) in [(3, false, 32), (8, false, 52), (3, true, 48), (8, true, 108)] {
         let mut words = vec!["--oit", "shortcut", "--oit-k", if k == 3 { "3" } else { "8" }];
         words.extend(ordered.then_some("--oit-ordered"));
-        let (_, render) = shown("shortcut", &words, &three);
+        let (picture, render) = shown("shortcut", &words, &three);
+        words.extend(["--fill", "raster"]);
+        let by_raster = ["hair.render.shortcut_depths_raster", "hair.render.shortcut_colors_raster"];
+        let (raster, _) = shown("raster", &words, &by_raster);
+        assert!(picture == raster, "the fill makes no difference");
         for key in ["fragments", "pixels_with_hair", "dropped"] {
             assert_eq!(render[key], lists[key], "{key}");
         }

@@ -17,7 +17,7 @@ const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
 const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 7] = [
+const VARIANTS: [&[&str]; 8] = [
     &[],
     &["builtin:fur:40:3", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
     &["pinned.tfx", "--oit-k", "16"],
@@ -25,6 +25,7 @@ const VARIANTS: [&[&str]; 7] = [
     &["--fill", "raster"],
     &["--oit", "shortcut", "--oit-k", "1"],
     &["--oit", "shortcut", "--oit-ordered", "--oit-k", "8"],
+    &["--oit", "shortcut", "--oit-ordered", "--fill", "raster"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {
