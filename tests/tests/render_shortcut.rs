@@ -52,7 +52,7 @@ fn each_variant_is_as_in_f64() {
         let far = picture.pixels().into_iter().zip(&expected).filter(far).count();
         eprintln!("k = {k}, ordered {ordered}: {far} pixels beside {difference:?}; to exact {to_exact:?}");
         assert!(expected.iter().any(|pixel| pixel.w > 0.9), "the groom is in the picture");
-        assert!(far <= 2 && (far > 0 || difference.psnr > 80.0), "k = {k}, ordered {ordered}: {far}, {difference:?}");
+        assert!(far <= 4 && (far > 0 || difference.psnr > 80.0), "k = {k}, ordered {ordered}: {far}, {difference:?}");
         let alpha = picture.pixels().iter().zip(&exact).map(|(a, b)| (a.w - b.w).abs()).fold(0.0, f64::max);
         assert!(alpha < 0.001, "alpha is that of all fragments: {alpha}");
     }

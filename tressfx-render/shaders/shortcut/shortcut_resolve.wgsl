@@ -28,8 +28,7 @@ import package::sums::mean_color;
 
 var<workgroup> hairy: atomic<u32>;
 
-// Two kernels computed a fragment's depth, and a driver may round them apart, so that a pixel may have opacity and no
-// colour. It is left as it was then, not made black.
+// Where there is opacity and no colour, as rounding might have it, the picture is left as it was, not made black.
 @if(!ordered)
 fn front(index: u32, behind: f32) -> vec4<f32> {
     let color = min(vec3(resolved[index], sums[index].x), vec3(FULL));
