@@ -1,10 +1,10 @@
 //! ShortCut, after TressFX 3 and 4: the depths of the nearest fragments of each pixel first, then their colours. It needs the
 //! same memory for each pixel, however much hair there is.
 //!
-//! What differs from the original: sums are of integers, so that a picture does not depend on the
-//! order of atomics. The second walk reads the depth of the last layer from the layers; the original writes it to the depth
-//! buffer of the scene for the early test of the hardware, and later passes see hair there. Colours are cleared to zero and
-//! no sum is divided by zero. Fragments too faint for an alpha of 16 bits are left out, and no others.
+//! What differs from the original: sums are of integers, so that a picture does not depend on the order of atomics. The second
+//! pass reads the depth of the last layer from the layers; the original writes it to the depth buffer of the scene for the
+//! early test of the hardware, and later passes see hair there. Colours are cleared to zero and no sum is divided by zero.
+//! Faint fragments add to the opacity too, and come last for a layer.
 
 mod colors;
 mod depths;
