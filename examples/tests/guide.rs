@@ -17,8 +17,8 @@ use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
-    ViewDraw,
+    Fill, HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc,
+    StrandInfo, Targets, Technique, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, StepInput, Wind};
 
@@ -63,8 +63,9 @@ fn what_has_no_file_has_its_defaults_too() {
     let StrandOptions { vertices, follows, follow_radius, tip_separation, shuffle, seed, metres_per_unit } =
         StrandOptions::default();
     let Wind { velocity, half_angle, gust_period } = Wind::default();
-    let PpllDesc { k, max_node_bytes, count_limit, .. } = PpllDesc::default();
-    let tables: [(&str, &[(&str, String)]); 3] = [
+    let PpllDesc { k, max_node_bytes, count_limit, fill, .. } = PpllDesc::default();
+    let shortcut = ShortCutDesc::default();
+    let tables: [(&str, &[(&str, String)]); 4] = [
         (
             "Strands",
             &[
@@ -91,6 +92,15 @@ fn what_has_no_file_has_its_defaults_too() {
                 ("k", k.to_string()),
                 ("max_node_bytes", max_node_bytes.to_string()),
                 ("count_limit", count_limit.to_string()),
+                ("fill", format!("Fill::{fill:?}")),
+            ],
+        ),
+        (
+            "ShortCut",
+            &[
+                ("k", shortcut.k.to_string()),
+                ("ordered", shortcut.ordered.to_string()),
+                ("fill", format!("Fill::{:?}", shortcut.fill)),
             ],
         ),
     ];
@@ -134,11 +144,22 @@ fn everything() -> PassList {
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
     let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
     let section = ShadedStrands::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
-    let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new(size, Format::Rgba16F)).unwrap();
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let lights = Lights::default();
-    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
+    let techniques: [Technique; 6] = [
+        PpllDesc::default().into(),
+        PpllDesc::default().fill(Fill::Raster).into(),
+        ShortCutDesc::default().into(),
+        ShortCutDesc::default().ordered(true).into(),
+        ShortCutDesc::default().fill(Fill::Raster).into(),
+        ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
+    ];
+    for technique in techniques {
+        let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);
+        let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+        renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
+    }
     list
 }
 

@@ -7,7 +7,9 @@ use tressfx_core::glam::Vec3;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
-use tressfx_render::{Counters, HairRenderer, RenderDesc, ShadedStrands, StrandInfo};
+use tressfx_render::{
+    Counters, Fill, HairRenderer, PpllDesc, RenderDesc, ShadedStrands, ShortCutDesc, StrandInfo, Technique,
+};
 use tressfx_sim::{HairSim, SectionDesc, SimParams};
 
 fn backend() -> Failing<NullBackend> {
@@ -39,6 +41,28 @@ fn a_simulation_and_its_parameters() {
     assert_eq!(backend.living().0, before.0 + failures, "nothing but the new kernels is left");
     sim.destroy(&mut backend);
     assert_eq!(backend.living(), (0, 0));
+}
+
+#[test]
+fn a_renderer_of_each_technique() {
+    let techniques: [Technique; 3] = [
+        PpllDesc::default().fill(Fill::Raster).into(),
+        ShortCutDesc::default().into(),
+        ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
+    ];
+    for technique in techniques {
+        let mut backend = backend();
+        let desc = RenderDesc::new([64, 48], Format::Rgba16F).technique(technique);
+        let (mut renderer, failures) = backend.fail_everywhere(|backend| HairRenderer::new(backend, &desc));
+        assert!(failures > 6, "{failures} creations");
+        let (before, bytes) = (backend.living(), renderer.technique_bytes());
+        let ((), failures) = backend.fail_everywhere(|backend| renderer.resize(backend, [96, 64]));
+        assert!(failures > 1, "{failures} creations");
+        assert!(backend.living().0 == before.0 && backend.living().1 > before.1, "as many, and larger");
+        assert_eq!(backend.living().1 - before.1, renderer.technique_bytes() - bytes);
+        renderer.destroy(&mut backend);
+        assert_eq!(backend.living(), (0, 0));
+    }
 }
 
 #[test]

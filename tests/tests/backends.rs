@@ -10,7 +10,7 @@ use tressfx_compare::{Comparison, Picture, compare};
 use tressfx_conformance::show::{Scene, Show};
 use tressfx_conformance::sim::{REAL, real};
 use tressfx_core::backend::{Backend, Run};
-use tressfx_render::{Material, PpllDesc};
+use tressfx_render::{Fill, Material, PpllDesc, ShortCutDesc, Technique};
 use tressfx_sim::SimParams;
 
 use support::gpu;
@@ -99,6 +99,30 @@ fn hold(scenes: &[Scene]) {
 fn built_in_grooms_are_the_same_on_both_backends() {
     let scenes: Vec<Scene> = GROOMS.iter().flat_map(|name| scenes(&Scene::builtin(name, SIZE))).collect();
     assert!(scenes.len() >= 24);
+    hold(&scenes);
+}
+
+#[test]
+fn every_technique_is_the_same_on_both_backends() {
+    let shortcut = ShortCutDesc::default();
+    let techniques: [(&str, Technique); 7] = [
+        ("raster fill", PpllDesc::default().fill(Fill::Raster).into()),
+        ("mean of 1", shortcut.k(1).into()),
+        ("mean of 3", shortcut.into()),
+        ("mean of 8", shortcut.k(8).into()),
+        ("mean of 3, raster fill", shortcut.fill(Fill::Raster).into()),
+        ("3 in order", shortcut.ordered(true).into()),
+        ("8 in order", shortcut.k(8).ordered(true).into()),
+    ];
+    let scenes: Vec<Scene> = techniques
+        .into_iter()
+        .flat_map(|(name, technique)| {
+            ["curly:1200:48", "fur:4000:6"].map(|groom| {
+                let scene = Scene::builtin(groom, SIZE);
+                Scene { name: format!("{groom} {name}"), technique, ..scene }
+            })
+        })
+        .collect();
     hold(&scenes);
 }
 

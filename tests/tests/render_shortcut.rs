@@ -6,6 +6,7 @@ use glam::{DVec4, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
 use tressfx_core::backend::DepthOrder;
+use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Material, ShortCutDesc, reference};
 
 use support::screen;
@@ -51,7 +52,7 @@ fn each_variant_is_as_in_f64() {
         let far = picture.pixels().into_iter().zip(&expected).filter(far).count();
         eprintln!("k = {k}, ordered {ordered}: {far} pixels beside {difference:?}; to exact {to_exact:?}");
         assert!(expected.iter().any(|pixel| pixel.w > 0.9), "the groom is in the picture");
-        assert!(far <= 2 && (far > 0 || difference.psnr > 80.0), "k = {k}, ordered {ordered}: {far}, {difference:?}");
+        assert!(far <= 4 && (far > 0 || difference.psnr > 80.0), "k = {k}, ordered {ordered}: {far}, {difference:?}");
         let alpha = picture.pixels().iter().zip(&exact).map(|(a, b)| (a.w - b.w).abs()).fold(0.0, f64::max);
         assert!(alpha < 0.001, "alpha is that of all fragments: {alpha}");
     }
@@ -264,5 +265,24 @@ fn a_second_view_and_a_new_size_draw_as_a_renderer_of_their_own() {
         let squared = expected.pixels().iter().map(|pixel| *pixel + *pixel * (1.0 - pixel.w)).collect::<Vec<_>>();
         assert!(twice.difference(&squared).max < 0.002, "the second view lies over the first");
         assert_eq!(twice.counters, expected.counters);
+    }
+}
+
+#[test]
+fn views_of_one_frame_are_as_each_alone() {
+    let groom = Groom::wavy(200, 16, 5, material());
+    for (k, ordered) in [(3, false), (3, true)] {
+        let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
+        let (camera, depth) = ((screen.view.view_matrix(), screen.view.projection_matrix()), screen.view.depth());
+        let of = |offset, size| {
+            let viewport = Viewport::part(offset, size, [96, 64]).unwrap();
+            View::new(camera.0, camera.1, depth, viewport).unwrap()
+        };
+        // Neither begins nor ends on a tile of 8 x 8.
+        let views = [of([0, 0], [45, 64]), of([45, 3], [51, 37])];
+        let together = screen.views(&views, &[&groom]);
+        let alone = views.map(|view| screen.views(&[view], &[&groom]).pixels());
+        let sum: Vec<_> = alone[0].iter().zip(&alone[1]).map(|(a, b)| *a + *b).collect();
+        assert!(sum.iter().any(|pixel| pixel.w > 0.5) && together.pixels() == sum, "k = {k}, ordered {ordered}");
     }
 }

@@ -9,6 +9,7 @@ use tressfx_core::backend::{Backend, BufferDesc, ReadBack, Run};
 use tressfx_core::error::Error;
 use tressfx_core::hazards;
 use tressfx_core::pass::PassList;
+use tressfx_render::{Fill, PpllDesc, ShortCutDesc, Technique};
 
 const SIZE: [u32; 2] = [160, 90];
 
@@ -41,6 +42,24 @@ fn the_validation_layer_has_nothing_to_say_about_600_frames() {
     // Each run answers what the layer said about it.
     show.play(600);
     assert!(show.picture().1.pixels_with_hair > 100);
+}
+
+#[test]
+fn the_validation_layer_has_nothing_to_say_about_any_technique() {
+    let shortcut = ShortCutDesc::default();
+    let techniques: [Technique; 4] = [
+        PpllDesc::default().fill(Fill::Raster).into(),
+        shortcut.into(),
+        shortcut.fill(Fill::Raster).into(),
+        shortcut.k(8).ordered(true).into(),
+    ];
+    for technique in techniques {
+        let Some(backend) = vulkan(&watched()) else { return };
+        let scene = Scene { technique, ..Scene::builtin("wavy:120:16", SIZE) };
+        let mut show = Show::new(backend, &scene);
+        show.play(60);
+        assert!(show.picture().1.pixels_with_hair > 100, "{technique:?}");
+    }
 }
 
 #[test]
@@ -80,6 +99,9 @@ fn barriers_and_waits(scene: &Scene) -> Option<[usize; 2]> {
 fn a_frame_records_a_barrier_for_each_command_that_waits_and_no_other() {
     let mut scenes = vec![Scene::builtin("long:400:16", SIZE)];
     scenes.extend(real("tressfx41_ratboy/Ratboy_mohawk.tfx").map(|strands| Scene::new("mohawk", strands, SIZE)));
+    for technique in [ShortCutDesc::default().into(), PpllDesc::default().fill(Fill::Raster).into()] {
+        scenes.push(Scene { technique, ..scenes[0].clone() });
+    }
     for scene in scenes {
         let Some([recorded, waiting]) = barriers_and_waits(&scene) else { return };
         println!("{}: {recorded} barriers", scene.name);

@@ -2,15 +2,20 @@
 //! pixel.
 //!
 //! ```text
-//! hair.render.shade      compute  one thread a strand vertex: its colour as the view sees it          HairRenderer
-//! hair.render.fill       compute  one thread a strand segment: its fragments into the pixels' lists   Technique::Ppll
-//! hair.render.resolve    compute  one thread a pixel: the K nearest sorted, the rest summed up        Technique::Ppll
-//! hair.render.composite  raster   tiles of pixels with hair: blended over the caller's picture        every technique
+//! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
-//! hair.render.shortcut_depths   compute  one thread a strand segment: the K nearest depths of pixels       Technique::ShortCut
-//! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the Kth depth        Technique::ShortCut
-//! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                       Technique::ShortCut
+//! hair.render.fill              compute  one thread a strand segment: its fragments into the pixels' lists  Technique::Ppll
+//! hair.render.resolve           compute  one thread a pixel: the K nearest sorted, the rest summed up       Technique::Ppll
+//!
+//! hair.render.shortcut_depths   compute  one thread a strand segment: the K nearest depths of pixels        Technique::ShortCut
+//! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the last depth        Technique::ShortCut
+//! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                        Technique::ShortCut
+//!
+//! hair.render.composite         raster   tiles of pixels with hair: blended over the caller's picture       every technique
 //! ```
+//!
+//! With [`Fill::Raster`] raster passes with two triangles a strand segment do what the compute passes over segments do. Their
+//! labels end in `_raster`.
 //!
 //! The last column says what writes the pass. This crate writes passes into a [`PassList`](tressfx_core::pass::PassList). It
 //! names no backend, submits nothing and reads nothing back unless the caller asks. Each compute kernel is one WGSL file,
@@ -28,6 +33,7 @@ mod predict;
 pub mod reference;
 mod renderer;
 mod resolved;
+mod segments;
 mod shade;
 mod shaders;
 mod shortcut;
@@ -44,6 +50,7 @@ pub use material::{Highlight, Material, MaterialError};
 pub use ppll::{K_RANGE, PpllDesc};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
+pub use segments::Fill;
 pub use shaders::VIEW_MODULE;
 pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};

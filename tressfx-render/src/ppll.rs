@@ -8,13 +8,14 @@ use tressfx_core::backend::{Backend, Format};
 use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::Module;
+use tressfx_core::shader::{Module, Specialization};
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels};
+use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{TechniqueInstance, check_k};
@@ -26,7 +27,7 @@ pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 14>([
+const LIBRARY: &[Module] = &with_shared::<2, 15>([
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
@@ -42,6 +43,8 @@ pub struct PpllDesc {
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
     pub count_limit: u32,
+    /// What fills the lists.
+    pub fill: Fill,
 }
 
 impl PpllDesc {
@@ -63,6 +66,12 @@ impl PpllDesc {
         Self { count_limit, ..self }
     }
 
+    /// The same, filled in another way.
+    #[must_use]
+    pub fn fill(self, fill: Fill) -> Self {
+        Self { fill, ..self }
+    }
+
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
@@ -71,7 +80,7 @@ impl PpllDesc {
 impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
-        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT }
+        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT, fill: Fill::Compute }
     }
 }
 
@@ -86,7 +95,7 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
-    fill: fill::Fill,
+    fill: Segments,
     resolve: resolve::Resolve,
     composite: Composite,
     pool: NodePool,
@@ -100,7 +109,7 @@ impl Ppll {
         Ok(Self {
             desc: *desc,
             size,
-            fill: fill::Fill::new(backend)?,
+            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &Specialization::new(), target)?,
             resolve: resolve::Resolve::new(backend, desc.k)?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
@@ -109,14 +118,14 @@ impl Ppll {
     }
 
     fn forget_bindings(&mut self) {
-        self.fill.bound.clear();
+        self.fill.forget_bindings();
         self.resolve.bound.clear();
         self.composite.bound.clear();
     }
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
-        [&self.fill.kernel.shader, &self.resolve.kernel.shader, &self.composite.pipeline.shader]
+        [self.fill.shader(), &self.resolve.kernel.shader, &self.composite.pipeline.shader]
     }
 }
 
@@ -155,7 +164,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
-        self.fill.bound.begin_frame();
+        self.fill.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
@@ -164,9 +173,7 @@ impl TechniqueInstance for Ppll {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
-        for draw in draws {
-            self.fill.pass(list, view, draw, &self.pool, targets.depth)?;
-        }
+        self.fill.passes(list, view, draws, targets, &self.pool.bindings(view))?;
         self.resolve.pass(list, view, &self.pool, &self.resolved)?;
         self.composite.pass(list, view, &self.resolved, targets.color)
     }

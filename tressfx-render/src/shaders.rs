@@ -12,14 +12,16 @@ pub(crate) const GROUP: u32 = 64;
 /// What lights a surface: views and their lights, as [`ViewUniform`](crate::uniforms::ViewUniform) gives them to a shader.
 pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wgsl"));
 
-/// What all kernels may import. `walk` asks for a module `sink`, which is the technique's.
-pub(crate) const SHARED: [Module; 12] = [
+/// What all kernels may import. `walk` asks for a module `sink`, which is the technique's; so does `quad`, which
+/// imports from it.
+pub(crate) const SHARED: [Module; 13] = [
     VIEW_MODULE,
     ("counters", include_str!("../shaders/shared/counters.wgsl")),
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
     ("fragment", include_str!("../shaders/shared/fragment.wgsl")),
     ("lighting", include_str!("../shaders/shared/lighting.wgsl")),
     ("line", include_str!("../shaders/shared/line.wgsl")),
+    ("quad", include_str!("../shaders/shared/quad.wgsl")),
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
     ("screen", include_str!("../shaders/shared/screen.wgsl")),
     ("section", include_str!("../shaders/shared/section.wgsl")),

@@ -1,10 +1,10 @@
 //! ShortCut, after TressFX 3 and 4: the depths of the nearest fragments of each pixel first, then their colours. It needs the
 //! same memory for each pixel, however much hair there is.
 //!
-//! What differs from the original: everything is compute, and sums are of integers, so that a picture does not depend on the
-//! order of atomics. The second walk reads the depth of the last layer from the layers; the original writes it to the depth
-//! buffer of the scene for the early test of the hardware, and later passes see hair there. Colours are cleared to zero and
-//! no sum is divided by zero. Fragments too faint for an alpha of 16 bits are left out, and no others.
+//! What differs from the original: sums are of integers, so that a picture does not depend on the order of atomics. The second
+//! pass reads the depth of the last layer from the layers; the original writes it to the depth buffer of the scene for the
+//! early test of the hardware, and later passes see hair there. Colours are cleared to zero and no sum is divided by zero.
+//! Faint fragments add to the opacity too, and come last for a layer.
 
 mod colors;
 mod depths;
@@ -23,6 +23,7 @@ use tressfx_core::view::View;
 use crate::composite::Composite;
 use crate::renderer::Targets;
 use crate::resolved::{check_pixels, pixels};
+use crate::segments::{Fill, Segments};
 use crate::strands::SectionDraw;
 use crate::technique::{TechniqueInstance, check_k};
 use crate::views::BoundView;
@@ -37,6 +38,8 @@ pub struct ShortCutDesc {
     pub k: u32,
     /// Whether the nearest fragments are blended in order. Else the colour is their mean, weighted by alpha.
     pub ordered: bool,
+    /// What turns segments of strands into fragments.
+    pub fill: Fill,
 }
 
 impl ShortCutDesc {
@@ -55,6 +58,12 @@ impl ShortCutDesc {
         Self { ordered, ..self }
     }
 
+    /// The same with fragments from another kind of pass.
+    #[must_use]
+    pub fn fill(self, fill: Fill) -> Self {
+        Self { fill, ..self }
+    }
+
     fn specialization(&self) -> Specialization {
         Specialization::new().feature("ordered", self.ordered).constant("K", self.k)
     }
@@ -63,7 +72,7 @@ impl ShortCutDesc {
 impl Default for ShortCutDesc {
     /// The mean of three layers.
     fn default() -> Self {
-        Self { k: 3, ordered: false }
+        Self { k: 3, ordered: false, fill: Fill::Compute }
     }
 }
 
@@ -77,8 +86,8 @@ impl From<ShortCutDesc> for crate::Technique {
 #[derive(Debug)]
 pub(crate) struct ShortCut {
     desc: ShortCutDesc,
-    depths: depths::Depths,
-    colors: colors::Colors,
+    depths: Segments,
+    colors: Segments,
     resolve: resolve::Resolve,
     composite: Composite,
     memory: Memory,
@@ -88,10 +97,11 @@ impl ShortCut {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &ShortCutDesc, size: [u32; 2], target: Format) -> Result<Self> {
         check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
         check(backend, desc, size)?;
+        let k = Specialization::new().constant("K", desc.k);
         Ok(Self {
             desc: *desc,
-            depths: depths::Depths::new(backend, desc)?,
-            colors: colors::Colors::new(backend, desc)?,
+            depths: Segments::new(backend, desc.fill, &depths::SHADERS, &k, target)?,
+            colors: Segments::new(backend, desc.fill, &colors::SHADERS, &desc.specialization(), target)?,
             resolve: resolve::Resolve::new(backend, desc)?,
             composite: Composite::new(backend, target)?,
             memory: Memory::new(backend, size, desc)?,
@@ -101,7 +111,7 @@ impl ShortCut {
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 4] {
         let Self { depths, colors, resolve, composite, .. } = self;
-        [&depths.kernel.shader, &colors.kernel.shader, &resolve.kernel.shader, &composite.pipeline.shader]
+        [depths.shader(), colors.shader(), &resolve.kernel.shader, &composite.pipeline.shader]
     }
 }
 
@@ -110,8 +120,8 @@ impl TechniqueInstance for ShortCut {
         check(backend, &self.desc, size)?;
         let memory = Memory::new(backend, size, &self.desc)?;
         std::mem::replace(&mut self.memory, memory).destroy(backend);
-        self.depths.bound.clear();
-        self.colors.bound.clear();
+        self.depths.forget_bindings();
+        self.colors.forget_bindings();
         self.resolve.bound.clear();
         self.composite.bound.clear();
         Ok(())
@@ -139,8 +149,8 @@ impl TechniqueInstance for ShortCut {
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
-        self.depths.bound.begin_frame();
-        self.colors.bound.begin_frame();
+        self.depths.begin_frame();
+        self.colors.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         self.memory.counters.clear(list, views);
@@ -148,12 +158,8 @@ impl TechniqueInstance for ShortCut {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.memory.clear(list, view.size, &self.desc);
-        for draw in draws {
-            self.depths.pass(list, view, draw, &self.memory, targets.depth)?;
-        }
-        for draw in draws {
-            self.colors.pass(list, view, draw, &self.memory, targets.depth)?;
-        }
+        self.depths.passes(list, view, draws, targets, &self.memory.of_depths(view))?;
+        self.colors.passes(list, view, draws, targets, &self.memory.of_colors(&self.desc))?;
         self.resolve.pass(list, view, &self.memory)?;
         self.composite.pass(list, view, &self.memory.resolved, targets.color)
     }

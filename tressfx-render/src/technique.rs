@@ -12,8 +12,8 @@ use tressfx_core::view::View;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
 use crate::shortcut::{ShortCut, ShortCutDesc};
-use crate::tiles::{Tiles, TilesDesc};
 use crate::strands::SectionDraw;
+use crate::tiles::{Tiles, TilesDesc};
 use crate::views::BoundView;
 
 /// How fragments of hair behind each other are sorted and blended.

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{K_RANGE, PpllDesc, ShortCutDesc, Technique, TilesDesc};
+use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -17,6 +17,26 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
+    /// What turns segments of strands into fragments; the picture is the same
+    #[arg(long, value_enum, default_value_t = FillName::Compute)]
+    fill: FillName,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FillName {
+    /// Compute passes
+    Compute,
+    /// Fragment shaders
+    Raster,
+}
+
+impl FillName {
+    fn fill(self) -> Fill {
+        match self {
+            Self::Compute => Fill::Compute,
+            Self::Raster => Fill::Raster,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,12 +58,12 @@ impl Oit {
         match self.oit {
             OitName::Ppll => {
                 let desc = PpllDesc::default();
-                Ok(desc.k(self.k(desc.k, &K_RANGE)?).into())
+                Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
             }
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
-                Ok(desc.k(k).ordered(self.oit_ordered).into())
+                Ok(desc.k(k).ordered(self.oit_ordered).fill(self.fill.fill()).into())
             }
             OitName::Tiles if self.oit_k.is_some() => bail!("--oit-k belongs to --oit ppll and --oit shortcut"),
             OitName::Tiles => Ok(TilesDesc::default().into()),

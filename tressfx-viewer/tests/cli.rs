@@ -94,6 +94,9 @@ fn bad_words_are_refused_by_name() {
     std::fs::write(folder.join("bad.toml"), "[sim]\ndamping = 7.0\n").unwrap();
     let (message, _) = words(&["--params", "bad.toml"]);
     assert!(message.contains("bad.toml") && message.contains("damping"), "{message}");
+    assert!(words(&["--oit-k", "17"]).0.contains("--oit-k 17: it must be from 1 to 16"));
+    assert!(words(&["--oit", "shortcut", "--oit-k", "9"]).0.contains("--oit-k 9: it must be from 1 to 8"));
+    assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
     assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
 }
@@ -129,13 +132,53 @@ fn figures_have_their_keys_and_sensible_values() {
     assert!(stats["sim"]["rms_edge_error"].as_f64().unwrap() < 2e-6);
     assert!(stats["sim"]["max_edge_error"].is_number());
     assert_eq!(stats["render"]["dropped"], 0);
-    for key in ["fragments", "pixels_with_hair", "peak_gpu_bytes"] {
+    for key in ["fragments", "pixels_with_hair", "peak_gpu_bytes", "oit_bytes"] {
         assert!(stats["render"][key].as_u64().unwrap() > 100, "{key}: {stats}");
     }
     for pass in stats["passes"].as_array().unwrap() {
         let figure = |key: &str| pass[key].as_f64().unwrap();
         assert!(figure("min_ms") <= figure("median_ms") && figure("runs") >= 1.0, "{pass}");
     }
+}
+
+#[test]
+fn each_technique_draws_the_hair_and_says_what_it_takes() {
+    let folder = folder("techniques");
+    let shown = |name: &str, words: &[&str], labels: &[&str]| {
+        let (picture, figures) = (format!("{name}.png"), format!("{name}.json"));
+        let table = render(&folder, &[&["--out", &picture, "--stats", &figures, "--print-passes"], words].concat());
+        assert!(labels.iter().all(|label| table.contains(label)), "{table}");
+        let stats: Value = serde_json::from_slice(&std::fs::read(folder.join(figures)).unwrap()).unwrap();
+        (std::fs::read(folder.join(picture)).unwrap(), stats["render"].clone())
+    };
+    let (compute, lists) = shown("compute", &[], &["hair.render.fill ", "hair.render.resolve"]);
+    let (raster, _) = shown("raster", &["--fill", "raster"], &["hair.render.fill_raster", "hair.render.resolve"]);
+    assert!(compute == raster, "the fill makes no difference");
+    let three = ["hair.render.shortcut_depths", "hair.render.shortcut_colors", "hair.render.shortcut_resolve"];
+    for (k, ordered, bytes) in [(3, false, 32), (8, false, 52), (3, true, 48), (8, true, 108)] {
+        let mut words = vec!["--oit", "shortcut", "--oit-k", if k == 3 { "3" } else { "8" }];
+        words.extend(ordered.then_some("--oit-ordered"));
+        let (picture, render) = shown("shortcut", &words, &three);
+        words.extend(["--fill", "raster"]);
+        let by_raster = ["hair.render.shortcut_depths_raster", "hair.render.shortcut_colors_raster"];
+        let (raster, _) = shown("raster", &words, &by_raster);
+        assert!(picture == raster, "the fill makes no difference");
+        for key in ["fragments", "pixels_with_hair", "dropped"] {
+            assert_eq!(render[key], lists[key], "{key}");
+        }
+        let [width, height] = [160, 90u64];
+        let tiles = 4 * width.div_ceil(8) * height.div_ceil(8);
+        let counters = 8 * 16;
+        assert_eq!(render["oit_bytes"].as_u64(), Some(bytes * width * height + tiles + counters), "{words:?}");
+        let flip = flip_to_lists(&folder, "shortcut.png");
+        assert!(flip < 0.03, "{words:?}: FLIP {flip} to the lists");
+    }
+}
+
+/// FLIP between a picture and that of the lists.
+fn flip_to_lists(folder: &Path, picture: &str) -> f64 {
+    let json: Value = serde_json::from_str(&passes(folder, &["compare", "compute.png", picture, "--json"])).unwrap();
+    json["flip_mean"].as_f64().unwrap()
 }
 
 #[test]

@@ -17,11 +17,15 @@ const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
 const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 4] = [
+const VARIANTS: [&[&str]; 8] = [
     &[],
     &["builtin:fur:40:3", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
     &["pinned.tfx", "--oit-k", "16"],
     &["pinned.tfx", "--params", "bare.toml"],
+    &["--fill", "raster"],
+    &["--oit", "shortcut", "--oit-k", "1"],
+    &["--oit", "shortcut", "--oit-ordered", "--oit-k", "8"],
+    &["--oit", "shortcut", "--oit-ordered", "--fill", "raster"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {
@@ -77,7 +81,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     }
     assert_eq!(labels, labels_of_kernels());
     let both = |name| [format!("{name} false"), format!("{name} true")];
-    assert_eq!(features, ["global_shape", "pinned_tips", "roots"].into_iter().flat_map(both).collect());
+    assert_eq!(features, ["global_shape", "ordered", "pinned_tips", "roots"].into_iter().flat_map(both).collect());
 }
 
 /// Every binding stands in the text, with its name in the line that says where it is.
@@ -104,7 +108,9 @@ fn check_text(folder: &Path, entry: &Value, language: &str) {
 /// The labels of all kernels there are: each is a WGSL file beside those that are imported.
 fn labels_of_kernels() -> BTreeSet<String> {
     let mut labels = BTreeSet::new();
-    for (group, folder) in [("sim", "shaders"), ("render", "shaders"), ("render", "shaders/ppll")] {
+    let folders =
+        [("sim", "shaders"), ("render", "shaders"), ("render", "shaders/ppll"), ("render", "shaders/shortcut")];
+    for (group, folder) in folders {
         let folder = format!("{}/../tressfx-{group}/{folder}", env!("CARGO_MANIFEST_DIR"));
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
             let wgsl = fs::read_to_string(&path).unwrap();

@@ -7,7 +7,7 @@ import package::constants::K;
 import package::counters::Counters;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
-import package::sums::{FULL, average, optical_depth, transmittance_of, weighted};
+import package::sums::{FULL, mean_color, optical_depth, transmittance_of, weighted};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -55,7 +55,7 @@ fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
     }
     if tail.weight > 0u {
         let behind = transmittance * transmittance_of(tail.optical);
-        color += (transmittance - behind) * average(tail.color, tail.weight, UNIT);
+        color += (transmittance - behind) * mean_color(tail.color, tail.weight, UNIT);
         transmittance = behind;
     }
     return vec4(color, 1.0 - transmittance);

@@ -11,6 +11,9 @@ struct Paint {
     end: vec4<f32>,
 }
 
+// The square of a length in pixels: a shorter segment has no direction and leaves nothing.
+const SHORTEST: f32 = 1e-12;
+
 // The line through the middle of a ribbon.
 struct Line {
     delta: vec2<f32>,
@@ -76,5 +79,5 @@ fn middle_of(span: Span, column: i32) -> f32 {
 }
 
 fn is_drawn(ribbon: Ribbon, line: Line) -> bool {
-    return ribbon.visible && line.square >= 1e-12;
+    return ribbon.visible && line.square >= SHORTEST;
 }

@@ -71,6 +71,11 @@ fn project(a: End, b: End, lens: LensUniform) -> Ribbon {
     return ribbon;
 }
 
+// 1 / w of points by their nearness.
+fn scale_of(lens: LensUniform, nearness: vec2<f32>) -> vec2<f32> {
+    return select(vec2(1.0), nearness, lens.is_perspective == 1u);
+}
+
 // Where on a segment, 0 to 1, its screen parameter `t` is, that is 0 and 1 at the ribbon's ends.
 fn along(ribbon: Ribbon, t: f32) -> f32 {
     return mix(ribbon.part.x, ribbon.part.y, t * ribbon.scale.y / mix(ribbon.scale.x, ribbon.scale.y, t));
@@ -93,7 +98,7 @@ fn clip(ribbon: Ribbon, lens: LensUniform, size: vec2<f32>, margin: f32) -> Ribb
     cut.end = mix(ribbon.start, ribbon.end, t.y);
     cut.half_width = mix(ribbon.half_width.xx, ribbon.half_width.yy, t);
     cut.nearness = mix(ribbon.nearness.xx, ribbon.nearness.yy, t);
-    cut.scale = mix(ribbon.scale.xx, ribbon.scale.yy, t);
+    cut.scale = scale_of(lens, cut.nearness);
     cut.part = vec2(along(ribbon, t.x), along(ribbon, t.y));
     return cut;
 }

@@ -23,6 +23,6 @@ fn transmittance_of(optical: u32) -> f32 {
 }
 
 // The colour of a sum of weighted colours. `weight` is the sum of their alphas, not 0.
-fn average(color: vec3<u32>, weight: u32, unit: f32) -> vec3<f32> {
+fn mean_color(color: vec3<u32>, weight: u32, unit: f32) -> vec3<f32> {
     return vec3<f32>(color) * (OPAQUE / unit) / f32(weight);
 }

@@ -2,11 +2,13 @@
 
 import package::constants::K;
 import package::fragment::Fragment;
-import package::layers::layer_key;
+import package::layers::{is_in_front, layer_key};
 import package::screen::view;
 
 @if(ordered)
 import package::fragment::pack_color;
+@if(ordered)
+import package::layers::ROUNDING;
 @if(!ordered)
 import package::layers::UNIT;
 @if(!ordered)
@@ -30,7 +32,7 @@ struct Sink {
 fn take(sink: ptr<function, Sink>, pixel: vec2<u32>, fragment: Fragment) {
     let index = pixel.y * view.size.x + pixel.x;
     let key = layer_key(fragment);
-    if key >= layers[index * K + K - 1u] {
+    if is_in_front(key, layers[index * K + K - 1u]) {
         keep(index, key, fragment);
     }
 }
@@ -59,13 +61,29 @@ fn add_to_sums(place: u32, value: u32) {
     }
 }
 
+// The key of the layer that is nearest to a key: its own, but for rounding.
+@if(ordered)
+fn nearest_layer(index: u32, key: u32) -> u32 {
+    var nearest = key;
+    var distance = ROUNDING + 1u;
+    for (var i = index * K; i < index * K + K; i++) {
+        let apart = max(layers[i], key) - min(layers[i], key);
+        if apart < distance {
+            nearest = layers[i];
+            distance = apart;
+        }
+    }
+    return nearest;
+}
+
 // Fragments of one key share as many layers as there are fragments, and fewer at the last. Each layer keeps the larger of
 // two words and hands the other on, so that the same words are left however threads interleave.
 @if(ordered)
 fn keep(index: u32, key: u32, fragment: Fragment) {
+    let place = nearest_layer(index, key);
     var passed = pack_color(fragment);
     for (var i = index * K; i < index * K + K; i++) {
-        if layers[i] == key {
+        if layers[i] == place {
             passed.x = min(passed.x, atomicMax(&slots[2u * i], passed.x));
             passed.y = min(passed.y, atomicMax(&slots[2u * i + 1u], passed.y));
         }

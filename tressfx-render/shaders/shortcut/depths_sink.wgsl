@@ -1,6 +1,7 @@
 // Fragments become the keys of layers, and add to the optical depth of their pixel.
 
 import package::constants::K;
+import package::counters::Counters;
 import package::fragment::{Fragment, OPAQUE};
 import package::layers::layer_key;
 import package::screen::view;
@@ -9,6 +10,7 @@ import package::sums::optical_depth;
 // K a pixel.
 @group(0) @binding(6) var<storage, read_write> layers: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> opticals: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> counters: Counters;
 
 struct Sink {
     count: u32,
@@ -38,5 +40,13 @@ fn insert(first: u32, key: u32, hides: bool) {
     for (var i = 0u; i < K && passed != 0u; i++) {
         let held = atomicMax(&layers[first + i], passed);
         passed = select(min(held, passed), key, hides);
+    }
+}
+
+// As in the sum of a pixel: what has overflowed once stays full.
+fn count_fragments(count: u32) {
+    let old = atomicAdd(&counters.fragments, count);
+    if old > 0xffffffffu - count {
+        atomicOr(&counters.fragments, 0x80000000u);
     }
 }

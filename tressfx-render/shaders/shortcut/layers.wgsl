@@ -15,3 +15,10 @@ const UNIT: f32 = 262144.0;
 fn layer_key(fragment: Fragment) -> u32 {
     return (bitcast<u32>(fragment.nearness) + 1u) | select(0u, NOT_FAINT, fragment.alpha >= FAINT);
 }
+
+// Two kernels compute the key of a fragment, and a driver may round them apart: in the last bits keys are not compared.
+const ROUNDING: u32 = 4u;
+
+fn is_in_front(key: u32, last: u32) -> bool {
+    return key + ROUNDING >= last;
+}

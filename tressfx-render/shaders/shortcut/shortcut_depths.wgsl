@@ -1,13 +1,10 @@
 // First pass of ShortCut, one thread a segment: the depths of the K nearest fragments of each pixel, and the opacity of
 // all of them.
 
-import package::counters::Counters;
 import package::grid::{GROUP, thread_index};
-import package::sink::Sink;
+import package::sink::{Sink, count_fragments};
 import package::strands::{paint_of, ribbon_of, section};
 import package::walk::walk;
-
-@group(0) @binding(8) var<storage, read_write> counters: Counters;
 
 var<workgroup> counted: atomic<u32>;
 
@@ -26,11 +23,6 @@ fn shortcut_depths(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgro
     }
     workgroupBarrier();
     if lane == 0u {
-        let count = atomicLoad(&counted);
-        let old = atomicAdd(&counters.fragments, count);
-        // As in the sums of the pixels: what has overflowed once stays full.
-        if old > 0xffffffffu - count {
-            atomicOr(&counters.fragments, 0x80000000u);
-        }
+        count_fragments(atomicLoad(&counted));
     }
 }

@@ -10,7 +10,7 @@ import package::fragment::{OPAQUE, packed_alpha, packed_color};
 @if(!ordered)
 import package::layers::UNIT;
 @if(!ordered)
-import package::sums::average;
+import package::sums::mean_color;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<storage, read> layers: array<u32>;
@@ -28,8 +28,7 @@ import package::sums::average;
 
 var<workgroup> hairy: atomic<u32>;
 
-// Two kernels computed a fragment's depth, and a driver may round them apart, so that a pixel may have opacity and no
-// colour. It is left as it was then, not made black.
+// Where there is opacity and no colour, as rounding might have it, the picture is left as it was, not made black.
 @if(!ordered)
 fn front(index: u32, behind: f32) -> vec4<f32> {
     let color = min(vec3(resolved[index], sums[index].x), vec3(FULL));
@@ -37,7 +36,7 @@ fn front(index: u32, behind: f32) -> vec4<f32> {
     if weight == 0u {
         return vec4(0.0);
     }
-    return vec4((1.0 - behind) * average(color, weight, UNIT), 1.0 - behind);
+    return vec4((1.0 - behind) * mean_color(color, weight, UNIT), 1.0 - behind);
 }
 
 // What is behind has the mean colour of those in front.

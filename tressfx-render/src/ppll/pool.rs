@@ -5,10 +5,12 @@ use tressfx_core::error::Result;
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
 
 use super::PpllDesc;
 use crate::counters::ViewCounters;
 use crate::resolved::{pixels, storage};
+use crate::views::BoundView;
 
 /// Bytes of a fragment: depth key, colour and alpha, next.
 pub(crate) const NODE_BYTES: u64 = 16;
@@ -86,6 +88,16 @@ impl NodePool {
         };
         list.upload(self.uniform, 0, &[uniform]);
         self.counters.clear(list, views);
+    }
+
+    /// What the shaders that fill it bind of it.
+    pub(crate) fn bindings(&self, view: &BoundView) -> [(&'static str, Binding); 4] {
+        [
+            ("pool", self.uniform.into()),
+            ("heads", self.heads.into()),
+            ("nodes", self.nodes.into()),
+            ("counters", self.counters.of(view.index).into()),
+        ]
     }
 
     /// Empties the lists of a view.

@@ -9,6 +9,7 @@ use tressfx_core::shader::Binding;
 use super::ShortCutDesc;
 use crate::counters::ViewCounters;
 use crate::resolved::{Resolved, pixels, storage};
+use crate::views::BoundView;
 
 /// The buffers of ShortCut.
 #[derive(Debug)]
@@ -53,6 +54,24 @@ impl Memory {
     /// `fronts` by the name that it has in the shaders.
     pub(crate) fn fronts(&self, desc: &ShortCutDesc) -> (&'static str, Binding) {
         (if desc.ordered { "slots" } else { "sums" }, self.fronts.into())
+    }
+
+    /// What the first pass binds of it.
+    pub(crate) fn of_depths(&self, view: &BoundView) -> [(&'static str, Binding); 3] {
+        [
+            ("layers", self.layers.into()),
+            ("opticals", self.opticals.into()),
+            ("counters", self.counters.of(view.index).into()),
+        ]
+    }
+
+    /// What the second pass binds of it.
+    pub(crate) fn of_colors(&self, desc: &ShortCutDesc) -> Vec<(&'static str, Binding)> {
+        let mut bindings = vec![("layers", self.layers.into()), self.fronts(desc)];
+        if !desc.ordered {
+            bindings.push(("resolved", self.resolved.colors.into()));
+        }
+        bindings
     }
 
     /// Empties the pixels of a view.

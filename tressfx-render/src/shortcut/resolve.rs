@@ -12,7 +12,7 @@ use crate::resolved::TILE;
 use crate::shaders::{compute, with_shared};
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<1, 13>([("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
+const LIBRARY: &[Module] = &with_shared::<1, 14>([("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
 
 #[derive(Debug)]
 pub(crate) struct Resolve {

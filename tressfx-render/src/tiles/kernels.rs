@@ -13,7 +13,7 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<3, 15>([
+const LIBRARY: &[Module] = &with_shared::<3, 16>([
     ("segments", include_str!("../../shaders/tiles/segments.wgsl")),
     ("tiles", include_str!("../../shaders/tiles/tiles.wgsl")),
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),
@@ -98,13 +98,7 @@ impl Kernels {
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 5] {
         let Self { points, depth, bin, alloc, blend } = self;
-        [
-            &points.kernel.shader,
-            &depth.kernel.shader,
-            &bin.kernel.shader,
-            &alloc.kernel.shader,
-            &blend.kernel.shader,
-        ]
+        [&points.kernel.shader, &depth.kernel.shader, &bin.kernel.shader, &alloc.kernel.shader, &blend.kernel.shader]
     }
 
     /// The vertices of a section before the eye, from the place `first` on.

@@ -90,7 +90,9 @@ impl Screen {
 
     fn destroy(self, backend: &mut dyn Backend) {
         self.resolved.destroy(backend);
-        [self.bins, self.depths, self.nearests, self.queue].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        [self.bins, self.depths, self.nearests, self.queue]
+            .into_iter()
+            .for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
