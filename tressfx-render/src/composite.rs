@@ -7,7 +7,7 @@ use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
 use tressfx_core::shader::{RasterPipeline, Specialization};
 
 use crate::bound::Bound;
-use crate::resolved::{Resolved, tile_count};
+use crate::resolved::Resolved;
 use crate::shaders::{SHARED, shader};
 use crate::views::BoundView;
 
@@ -41,7 +41,7 @@ impl Composite {
                 ("resolved", resolved.colors.into()),
             ])
         })?;
-        let draw = Draw::new(&self.pipeline, &bindings, 6, tile_count(view.size));
+        let draw = Draw::indirect(&self.pipeline, &bindings, resolved.draw, 0);
         list.raster(RasterPass::new(LABEL).color(target, Load::Keep).draw(draw));
         Ok(())
     }

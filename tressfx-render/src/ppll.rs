@@ -173,6 +173,7 @@ impl TechniqueInstance for Ppll {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
+        self.resolved.clear(list);
         self.fill.passes(list, view, draws, targets, &self.pool.bindings(view))?;
         self.resolve.pass(list, view, &self.pool, &self.resolved)?;
         self.composite.pass(list, view, &self.resolved, targets.color)

@@ -3,17 +3,23 @@
 use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
 
 /// Pixels along the edge of a tile: what `hair.render.composite` draws or leaves out.
 pub const TILE: u32 = 8;
+
+/// Bytes of the arguments of a draw.
+const DRAW_BYTES: u64 = 16;
 
 /// Hair without what is behind it.
 #[derive(Debug)]
 pub(crate) struct Resolved {
     /// `vec2<u32>` a pixel: four half floats, premultiplied colour and alpha. Only pixels of tiles with hair are written.
     pub(crate) colors: BufferId,
-    /// `u32` a tile: how many of its pixels have hair.
+    /// `u32` each: the tiles that have hair.
     pub(crate) tiles: BufferId,
+    /// Arguments of a draw of six vertices for each of `tiles`.
+    pub(crate) draw: BufferId,
 }
 
 impl Resolved {
@@ -22,16 +28,24 @@ impl Resolved {
 
     /// Bytes of both for `size` pixels.
     pub(crate) fn bytes(size: [u32; 2]) -> u64 {
-        (Self::PIXEL_BYTES * pixels(size)).max(16) + (4 * u64::from(tile_count(size))).max(16)
+        (Self::PIXEL_BYTES * pixels(size)).max(16) + (4 * u64::from(tile_count(size))).max(16) + DRAW_BYTES
     }
 
     pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
         let colors = storage(backend, "hair.render.resolved", Self::PIXEL_BYTES * pixels(size))?;
-        Ok(Self { colors, tiles: storage(backend, "hair.render.tiles", 4 * u64::from(tile_count(size)))? })
+        let tiles = storage(backend, "hair.render.tiles", 4 * u64::from(tile_count(size)))?;
+        let draw = backend.create_buffer(&BufferDesc::indirect("hair.render.tile_vertices", DRAW_BYTES))?;
+        Ok(Self { colors, tiles, draw })
+    }
+
+    /// Forgets the tiles of the view before.
+    pub(crate) fn clear(&self, list: &mut PassList) {
+        // No vertices, one instance.
+        list.upload(self.draw, 0, &[0u32, 1, 0, 0]);
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        [self.colors, self.tiles].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        [self.colors, self.tiles, self.draw].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 

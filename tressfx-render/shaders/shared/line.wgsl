@@ -43,7 +43,16 @@ fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fr
     let color = mix(paint.start, paint.end, along(ribbon, t));
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, t);
     let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
-    return Fragment(color.rgb, nearness, select(alpha, 0u, nearness < scene_nearness(pixel)));
+    return Fragment(color.rgb, nearness, alpha);
+}
+
+// The same where the scene does not hide it.
+fn visible_fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
+    var fragment = fragment_at(ribbon, line, paint, pixel);
+    if fragment.alpha > 0u && fragment.nearness < scene_nearness(pixel) {
+        fragment.alpha = 0u;
+    }
+    return fragment;
 }
 
 // The pixels that a ribbon may touch: columns along the axis that it follows most, and in each the rows around its middle.

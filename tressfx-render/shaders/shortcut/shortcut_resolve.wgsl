@@ -23,8 +23,10 @@ import package::sums::mean_color;
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
 // Premultiplied colour and alpha as four half floats, a pixel.
 @group(0) @binding(5) var<storage, read_write> resolved: array<vec2<u32>>;
-// Pixels with hair, a tile of 8 x 8.
+// Tiles of 8 x 8 pixels with hair.
 @group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
+// Six vertices for each of them: the arguments of a draw.
+@group(0) @binding(7) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
 var<workgroup> hairy: atomic<u32>;
 
@@ -77,8 +79,10 @@ fn shortcut_resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(wo
     workgroupBarrier();
     let count = atomicLoad(&hairy);
     if lane == 0u {
-        tiles[group.y * groups.x + group.x] = count;
         atomicAdd(&counters.pixels_with_hair, count);
+        if count > 0u {
+            tiles[atomicAdd(&tile_vertices[0], 6u) / 6u] = group.y * groups.x + group.x;
+        }
     }
     if lane == 0u && all(group.xy == vec2(0u)) {
         let wanted = atomicLoad(&counters.fragments);

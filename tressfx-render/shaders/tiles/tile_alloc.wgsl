@@ -7,8 +7,9 @@ import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
-// Pixels with hair, a tile.
+// Tiles that may have hair, and six vertices for each of them: the arguments of a draw.
 @group(0) @binding(8) var<storage, read_write> hairy: array<u32>;
+@group(0) @binding(11) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
 // The grid of groups that takes a tile each.
 @group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
@@ -24,6 +25,7 @@ const MOST: u32 = 0x40000000u;
 
 var<workgroup> group_references: atomic<u32>;
 var<workgroup> group_place: u32;
+var<workgroup> group_tile: u32;
 var<workgroup> group_size: atomic<u32>;
 var<workgroup> sums: array<u32, GROUP>;
 var<workgroup> tile_places: array<u32, TILES>;
@@ -32,6 +34,10 @@ var<workgroup> class_places: array<u32, CLASSES>;
 
 // Room for references of a group. What lies beyond the capacity does not exist.
 fn request(count: u32) -> u32 {
+    // All requests like this one together stay below MOST.
+    if count <= MOST / (tile_count() / TILES + 1u) {
+        return atomicAdd(&queue.references, count);
+    }
     var old = atomicLoad(&queue.references);
     while old < MOST {
         let exchange = atomicCompareExchangeWeak(&queue.references, old, min(old + min(count, MOST), MOST));
@@ -43,14 +49,17 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
-// The grid holds so many tiles more.
-fn lengthen(tiles: u32) {
-    if tiles > 0u {
-        let size = atomicAdd(&queue.size, tiles) + tiles;
-        atomicMax(&groups_of_tiles[0], min(size, ROW));
-        atomicMax(&groups_of_tiles[1], (size + ROW - 1u) / ROW);
-        atomicMax(&groups_of_tiles[2], 1u);
+// The grid and the draw hold so many tiles more. Returns how many there were.
+fn lengthen(tiles: u32) -> u32 {
+    if tiles == 0u {
+        return 0u;
     }
+    let before = atomicAdd(&tile_vertices[0], 6u * tiles) / 6u;
+    let size = before + tiles;
+    atomicMax(&groups_of_tiles[0], min(size, ROW));
+    atomicMax(&groups_of_tiles[1], (size + ROW - 1u) / ROW);
+    atomicMax(&groups_of_tiles[2], 1u);
+    return before;
 }
 
 @compute @workgroup_size(GROUP)
@@ -89,16 +98,17 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     }
     let load_class = min(firstLeadingBit(max(count, 1u)) / 2u, CLASSES - 1u);
     var position = 0u;
+    var place_of_tile = 0u;
     if part == 0u && count > 0u {
         // A tile with more than this ends behind the last reference that there is room for.
         tile_places[own] = atomicAdd(&group_references, min(count, MOST / TILES));
         position = atomicAdd(&class_sizes[load_class], 1u);
-        atomicAdd(&group_size, 1u);
+        place_of_tile = atomicAdd(&group_size, 1u);
     }
     workgroupBarrier();
     if lane == 0u {
         group_place = request(atomicLoad(&group_references));
-        lengthen(atomicLoad(&group_size));
+        group_tile = lengthen(atomicLoad(&group_size));
     }
     if lane < CLASSES && atomicLoad(&class_sizes[lane]) > 0u {
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));
@@ -106,9 +116,6 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     workgroupBarrier();
     if tile >= tile_count() {
         return;
-    }
-    if part == 0u {
-        hairy[tile] = 0u;
     }
     if count == 0u {
         return;
@@ -120,6 +127,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         place = min(place + min(in_bins[i], MOST), 2u * MOST);
     }
     if part == 0u {
+        hairy[group_tile + place_of_tile] = tile;
         queue.tiles[load_class * tile_count() + class_places[load_class] + position] =
             WaitingTile(tile, first, nearests[tile], 0u);
     }

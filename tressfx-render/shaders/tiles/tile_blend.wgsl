@@ -9,9 +9,9 @@
 import package::counters::Counters;
 import package::fragment::{Fragment, OPAQUE, depth_key, pack_color, packed_alpha, packed_color};
 import package::line::{fragment_at, is_drawn, line_of, middle_of, span_of};
-import package::screen::view;
+import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
-import package::sums::{average, optical_depth, transmittance_of, weighted};
+import package::sums::{mean_color, optical_depth, transmittance_of, weighted};
 import package::tiles::{CLASSES, IS_NEAREST, SLICES, WaitingTile, WaitingTiles, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
 
@@ -22,8 +22,6 @@ import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, u
 @group(0) @binding(8) var<storage, read> references: array<u32>;
 // Premultiplied colour and alpha as four half floats, a pixel.
 @group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
-// Pixels with hair, a tile.
-@group(0) @binding(10) var<storage, read_write> hairy: array<u32>;
 
 const LANES: u32 = 256u;
 // Lanes that share a segment: each has every second column of its pixels.
@@ -54,6 +52,9 @@ var<workgroup> counts: array<atomic<u32>, PIXELS>;
 var<workgroup> starts: array<u32, PIXELS>;
 // Optical depth, weight and colour of a mean; a pixel.
 var<workgroup> sums: array<array<atomic<u32>, 5>, PIXELS>;
+// Nearness of the scene.
+var<workgroup> scene: array<f32, PIXELS>;
+var<workgroup> rows: array<u32, TILE>;
 // A bit a pixel that takes no more.
 var<workgroup> closed: array<atomic<u32>, 2>;
 var<workgroup> hairy_pixels: atomic<u32>;
@@ -136,7 +137,7 @@ fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
                 continue;
             }
             let fragment = fragment_at(ribbon, line, paint, pixel);
-            if fragment.alpha > 0u {
+            if fragment.alpha > 0u && fragment.nearness >= scene[own] {
                 keep(unit, own, fragment);
             }
         }
@@ -166,12 +167,22 @@ fn rank_of(entry: u32) -> u32 {
 
 // Leaves the fragments of the unit in `places`, in order. All lanes come here.
 fn sort(count: u32, lane: u32) {
+    // Sums within rows of pixels, then of the rows before.
+    var before = 0u;
     if lane < PIXELS {
-        var sum = 0u;
-        for (var i = 0u; i < lane; i++) {
-            sum += atomicLoad(&counts[i]);
+        for (var i = lane - lane % TILE; i < lane; i++) {
+            before += atomicLoad(&counts[i]);
         }
-        starts[lane] = sum;
+        if lane % TILE == TILE - 1u {
+            rows[lane / TILE] = before + atomicLoad(&counts[lane]);
+        }
+    }
+    workgroupBarrier();
+    if lane < PIXELS {
+        for (var i = 0u; i < lane / TILE; i++) {
+            before += rows[i];
+        }
+        starts[lane] = before;
     }
     workgroupBarrier();
     for (var i = lane; i < count; i += LANES) {
@@ -214,7 +225,7 @@ fn blend_mean(front: Front, pixel: u32) -> Front {
     if weight > 0u {
         let color = vec3(atomicLoad(&sums[pixel][2]), atomicLoad(&sums[pixel][3]), atomicLoad(&sums[pixel][4]));
         let alpha = 1.0 - transmittance_of(8u * min(atomicLoad(&sums[pixel][0]), 0xfffffffu));
-        blended = over(front, average(color, weight, MEAN_UNIT), alpha);
+        blended = over(front, mean_color(color, weight, MEAN_UNIT), alpha);
     }
     for (var i = 0u; i < 5u; i++) {
         atomicStore(&sums[pixel][i], 0u);
@@ -226,7 +237,7 @@ fn close(pixel: u32) {
     atomicOr(&closed[pixel / 32u], 1u << (pixel % 32u));
 }
 
-fn prepare(tile: WaitingTile, lane: u32, is_inside: bool) {
+fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
     if lane < SLICES {
         bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile], tiles.capacity);
     }
@@ -246,7 +257,9 @@ fn prepare(tile: WaitingTile, lane: u32, is_inside: bool) {
         atomicStore(&hairy_pixels, 0u);
     }
     workgroupBarrier();
-    if lane < PIXELS && !is_inside {
+    if is_inside {
+        scene[lane] = scene_nearness(pixel);
+    } else if lane < PIXELS {
         close(lane);
     }
     if lane == 0u {
@@ -268,7 +281,7 @@ fn blend_tile(tile: WaitingTile, lane: u32) {
     let corner = vec2(tile.tile % tile_columns(), tile.tile / tile_columns()) * TILE;
     let pixel = corner + vec2(lane % TILE, lane / TILE);
     let is_inside = lane < PIXELS && all(pixel < view.size);
-    prepare(tile, lane, is_inside);
+    prepare(tile, lane, pixel, is_inside);
     var front = Front(vec3(0.0), 1.0);
     var fragments = 0u;
     loop {
@@ -308,7 +321,6 @@ fn blend_tile(tile: WaitingTile, lane: u32) {
     workgroupBarrier();
     if lane == 0u {
         let pixels = atomicLoad(&hairy_pixels);
-        hairy[tile.tile] = pixels;
         atomicAdd(&counters.pixels_with_hair, pixels);
         atomicAdd(&counters.fragments, fragments);
     }

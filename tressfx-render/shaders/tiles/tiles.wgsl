@@ -50,9 +50,7 @@ struct WaitingTile {
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
-    // Tiles of all classes.
-    size: atomic<u32>,
-    unused: vec2<u32>,
+    unused: array<u32, 3>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
     tiles: array<WaitingTile>,
@@ -61,8 +59,7 @@ struct Queue {
 // The same where nothing is added any more.
 struct WaitingTiles {
     references: u32,
-    size: u32,
-    unused: vec2<u32>,
+    unused: array<u32, 3>,
     sizes: array<u32, CLASSES>,
     tiles: array<WaitingTile>,
 }

@@ -46,6 +46,7 @@ impl Resolve {
                 ("counters", pool.counters.of(view.index).into()),
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
+                ("tile_vertices", resolved.draw.into()),
             ])
         })?;
         list.compute(&self.kernel, &bindings, Grid::for_image(view.size, TILE));

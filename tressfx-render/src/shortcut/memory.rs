@@ -77,6 +77,7 @@ impl Memory {
     /// Empties the pixels of a view.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], desc: &ShortCutDesc) {
         let [layers, opticals, fronts, resolved] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+        self.resolved.clear(list);
         list.clear(self.layers, 0, layers);
         list.clear(self.opticals, 0, opticals);
         list.clear(self.fronts, 0, fronts);

@@ -38,6 +38,7 @@ impl Resolve {
                 ("counters", memory.counters.of(view.index).into()),
                 ("resolved", memory.resolved.colors.into()),
                 ("tiles", memory.resolved.tiles.into()),
+                ("tile_vertices", memory.resolved.draw.into()),
             ])
         })?;
         list.compute(&self.kernel, &bindings, Grid::for_image(view.size, TILE));

@@ -168,6 +168,7 @@ impl Kernels {
             ("bins", memory.screen.bins.into()),
             ("queue", memory.screen.queue.into()),
             ("hairy", memory.screen.resolved.tiles.into()),
+            ("tile_vertices", memory.screen.resolved.draw.into()),
             ("groups_of_tiles", memory.groups.into()),
             ("nearests", memory.screen.nearests.into()),
         ];
@@ -194,7 +195,6 @@ impl Kernels {
             ("queue", memory.screen.queue.into()),
             ("references", memory.references.buffer.into()),
             ("resolved", memory.screen.resolved.colors.into()),
-            ("hairy", memory.screen.resolved.tiles.into()),
         ];
         let bindings = self.blend.bound.get((view.index, scene_depth), || self.blend.kernel.bind(&resources))?;
         list.compute_indirect(&self.blend.kernel, &bindings, memory.groups, 0);

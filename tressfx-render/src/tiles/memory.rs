@@ -177,6 +177,7 @@ impl Memory {
 
     /// Empties bins, nearests and the queue for a view of this size.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
+        self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
         list.clear(self.screen.nearests, 0, sizes(size)[1]);
         list.clear(self.screen.queue, 0, QUEUE_HEADER);
