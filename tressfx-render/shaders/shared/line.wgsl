@@ -30,28 +30,30 @@ fn line_of(ribbon: Ribbon) -> Line {
     return Line(delta, square, normal, pixel_reach(normal));
 }
 
-// What the ribbon leaves in a pixel: nothing unless the pixel's centre lies between its ends, half-open, so that the
-// segments of a straight strand share no pixel.
-fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
-    let offset = vec2<f32>(pixel) + 0.5 - ribbon.start;
-    let t = dot(offset, line.delta) / line.square;
-    if t < 0.0 || t >= 1.0 {
-        return Fragment();
-    }
-    let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, t);
-    let covered = coverage(dot(offset, line.normal), half_width, line.reach);
-    let color = mix(paint.start, paint.end, along(ribbon, t));
-    let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, t);
-    let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
-    return Fragment(color.rgb, nearness, alpha);
+// Where along the ribbon a pixel is, 0 to 1 between its ends.
+fn place_of(ribbon: Ribbon, line: Line, pixel: vec2<u32>) -> f32 {
+    return dot(vec2<f32>(pixel) + 0.5 - ribbon.start, line.delta) / line.square;
 }
 
-// The same where the scene does not hide it.
-fn visible_fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
-    var fragment = fragment_at(ribbon, line, paint, pixel);
-    if fragment.alpha > 0u && fragment.nearness < scene_nearness(pixel) {
-        fragment.alpha = 0u;
+// What the ribbon leaves in a pixel at `place` along it, wherever the scene is.
+fn fragment_on(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
+    let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
+    let covered = coverage(dot(vec2<f32>(pixel) + 0.5 - ribbon.start, line.normal), half_width, line.reach);
+    let color = mix(paint.start, paint.end, along(ribbon, place));
+    let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
+    return Fragment(color.rgb, nearness, u32(round(saturate(covered * color.a) * OPAQUE)));
+}
+
+// What the ribbon leaves in a pixel: nothing unless the pixel's centre lies between its ends, half-open, so that the
+// segments of a straight strand share no pixel; and nothing behind the scene.
+fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
+    let place = place_of(ribbon, line, pixel);
+    if place < 0.0 || place >= 1.0 {
+        return Fragment();
     }
+    let scene = scene_nearness(pixel);
+    var fragment = fragment_on(ribbon, line, paint, pixel, place);
+    fragment.alpha = select(fragment.alpha, 0u, fragment.nearness < scene);
     return fragment;
 }
 

@@ -2,7 +2,7 @@
 
 import package::coverage::pixel_reach;
 import package::fragment::Fragment;
-import package::line::{Paint, SHORTEST, line_of, visible_fragment_at};
+import package::line::{Paint, SHORTEST, fragment_at, line_of};
 import package::ribbon::{Ribbon, scale_of};
 import package::screen::view;
 import package::strands::{paint_of, ribbon_of, section};
@@ -64,5 +64,5 @@ fn fragment_of(corner: Corner) -> Fragment {
     let widths = corner.half_width_and_nearness;
     let scale = scale_of(view.lens, widths.zw);
     let ribbon = Ribbon(corner.ends.xy, corner.ends.zw, widths.xy, widths.zw, corner.part, scale, true);
-    return visible_fragment_at(ribbon, line_of(ribbon), Paint(corner.paint_start, corner.paint_end), pixel);
+    return fragment_at(ribbon, line_of(ribbon), Paint(corner.paint_start, corner.paint_end), pixel);
 }

@@ -2,7 +2,7 @@
 // the triangles that they were made for: so the segment finds its own pixels. What becomes of a fragment is up to the
 // technique: it brings a module `sink` with a struct `Sink` and a function `take(sink, pixel, fragment)`.
 
-import package::line::{Paint, is_drawn, line_of, middle_of, span_of, visible_fragment_at};
+import package::line::{Paint, fragment_at, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::sink::{Sink, take};
 
@@ -18,7 +18,7 @@ fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
         let last_row = min(i32(floor(middle + span.half_height)), span.size.y - 1);
         for (var row = max(i32(ceil(middle - span.half_height)), 0); row <= last_row; row++) {
             let pixel = vec2<u32>(select(vec2(column, row), vec2(row, column), span.steep));
-            let fragment = visible_fragment_at(ribbon, line, paint, pixel);
+            let fragment = fragment_at(ribbon, line, paint, pixel);
             if fragment.alpha > 0u {
                 take(sink, pixel, fragment);
             }

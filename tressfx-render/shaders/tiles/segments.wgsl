@@ -1,11 +1,12 @@
-// The segments of all sections, before the eye: what `hair.render.tile_points` has left.
+// The segments of all sections on the screen: what `hair.render.tile_points` has left.
 
 import package::line::Paint;
-import package::ribbon::{End, Ribbon, clip, is_sound, project};
+import package::ribbon::{End, Ribbon, clip, is_sound, project, scale_of, width_scale};
 import package::screen::view;
-import package::tiles::tiles;
+import package::tiles::{distance_of, tiles};
 
-// A point in the space of the eye and a radius, a vertex.
+// A vertex: its pixel, nearness, and radius / w. Where it is not beyond the near plane: its point in the space of the eye, and
+// its radius below 0.
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 // Colour and opacity as four half floats, a vertex.
 @group(0) @binding(3) var<storage, read> paints: array<vec2<u32>>;
@@ -35,13 +36,32 @@ fn segment_from(start: u32) -> Segment {
     return Segment(start, start + section.z);
 }
 
+// Coordinates in pixels up to which a ribbon need not be cut to the screen.
+const LARGEST_PIXEL: f32 = 32768.0;
+
+// A vertex before the eye again.
+fn end_of(point: vec4<f32>) -> End {
+    if point.w < 0.0 {
+        return End(point.xyz, -point.w);
+    }
+    let scale = scale_of(view.lens, point.zz).x;
+    let right = (point.x - view.lens.center.x) / (view.lens.focal.x * scale);
+    let up = (view.lens.center.y - point.y - view.lens.skew * scale * right) / (view.lens.focal.y * scale);
+    return End(vec3(right, up, -distance_of(point.z)), point.w / scale);
+}
+
 fn ribbon_of(segment: Segment) -> Ribbon {
     let a = points[segment.start];
     let b = points[segment.end];
     if !is_sound(a.xyz) || !is_sound(b.xyz) {
         return Ribbon();
     }
-    let ribbon = project(End(a.xyz, a.w), End(b.xyz, b.w), view.lens);
+    if min(a.w, b.w) >= 0.0 && all(max(abs(a.xy), abs(b.xy)) < vec2(LARGEST_PIXEL)) {
+        let nearness = vec2(a.z, b.z);
+        let half_width = vec2(a.w, b.w) * width_scale(view.lens, b.xy - a.xy);
+        return Ribbon(a.xy, b.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), true);
+    }
+    let ribbon = project(end_of(a), end_of(b), view.lens);
     return clip(ribbon, view.lens, vec2<f32>(view.size), max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
 }
 

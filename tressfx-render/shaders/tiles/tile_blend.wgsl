@@ -8,11 +8,11 @@
 
 import package::counters::Counters;
 import package::fragment::{Fragment, OPAQUE, depth_key, pack_color, packed_alpha, packed_color};
-import package::line::{fragment_at, is_drawn, line_of, middle_of, span_of};
+import package::line::{fragment_on, is_drawn, line_of, middle_of, place_of, span_of};
 import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
 import package::sums::{mean_color, optical_depth, transmittance_of, weighted};
-import package::tiles::{CLASSES, IS_NEAREST, SLICES, WaitingTile, WaitingTiles, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
+import package::tiles::{CLASSES, IS_NEAREST, SLICES, TILE, WaitingTile, WaitingTiles, begin_of, distance_of, parts_of, slice_of, tile_columns, tile_count, tiles};
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
 
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
@@ -36,7 +36,14 @@ const KEYS: u32 = 16u;
 const MOST_IN_MEAN: u32 = 16384u;
 const MEAN_UNIT: f32 = 256.0;
 
-var<workgroup> job: WaitingTile;
+// A tile, or a part of it.
+struct Job {
+    tile: WaitingTile,
+    part: u32,
+    parts: u32,
+}
+
+var<workgroup> job: Job;
 // Distance at which the slices of the tile begin.
 var<workgroup> begin: f32;
 var<workgroup> plan: Unit;
@@ -65,17 +72,19 @@ struct Front {
     transmittance: f32,
 }
 
-// The tile of a group: the heaviest come first.
-fn tile_of(group: u32) -> WaitingTile {
+// The work of a group: the heaviest comes first.
+fn job_of(group: u32) -> Job {
     var rest = group;
     for (var i = CLASSES; i > 0u; i--) {
+        let parts = parts_of(i - 1u);
         let size = queue.sizes[i - 1u];
-        if rest < size {
-            return queue.tiles[(i - 1u) * tile_count() + rest];
+        if rest < size * parts {
+            let tile = queue.tiles[(i - 1u) * tile_count() + rest / parts];
+            return Job(tile, rest % parts, parts);
         }
-        rest -= size;
+        rest -= size * parts;
     }
-    return WaitingTile(NO_TILE, 0u, 0.0, 0u);
+    return Job(WaitingTile(NO_TILE, 0u, 0.0, 0u), 0u, 1u);
 }
 
 fn add_to_mean(pixel: u32, fragment: Fragment) {
@@ -106,8 +115,8 @@ fn keep(unit: Unit, pixel: u32, fragment: Fragment) {
     }
 }
 
-// What a reference leaves in the tile whose first pixel is `corner`; one column of SHARE.
-fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
+// What a reference leaves in an area; one column of SHARE.
+fn collect(unit: Unit, area: vec4<u32>, reference: u32, share: u32) {
     let found = references[reference];
     // Once a unit: a segment is referred to from slices that follow each other.
     if reference >= bounds[unit.first + 1u] && (found & IS_NEAREST) == 0u {
@@ -122,12 +131,20 @@ fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
     if !is_drawn(ribbon, line) || farthest + min(KEYS, LAST_KEY - farthest) < unit.low || nearest - min(KEYS, nearest) >= unit.high {
         return;
     }
-    let paint = paint_of(segment);
     let span = span_of(ribbon, line);
-    let first = select(vec2<i32>(corner), vec2<i32>(corner.yx), span.steep);
-    let last = min(first + i32(TILE) - 1, span.size - 1);
+    let first = select(vec2<i32>(area.xy), vec2<i32>(area.yx), span.steep);
+    let last = select(vec2<i32>(area.zw), vec2<i32>(area.wz), span.steep) - 1;
+    let first_column = max(span.first_column, first.x);
     let last_column = min(span.last_column, last.x);
-    for (var column = max(span.first_column, first.x) + i32(share); column <= last_column; column += i32(SHARE)) {
+    let middles = vec2(middle_of(span, first_column), middle_of(span, last_column));
+    let is_beside = max(middles.x, middles.y) + span.half_height < f32(first.y) - 1.0
+        || min(middles.x, middles.y) - span.half_height > f32(last.y) + 1.0;
+    if first_column > last_column || is_beside {
+        return;
+    }
+    let corner = area.xy / TILE * TILE;
+    let paint = paint_of(segment);
+    for (var column = first_column + i32(share); column <= last_column; column += i32(SHARE)) {
         let middle = middle_of(span, column);
         let last_row = min(i32(floor(middle + span.half_height)), last.y);
         for (var row = max(i32(ceil(middle - span.half_height)), first.y); row <= last_row; row++) {
@@ -136,7 +153,11 @@ fn collect(unit: Unit, corner: vec2<u32>, reference: u32, share: u32) {
             if (atomicLoad(&closed[own / 32u]) & (1u << (own % 32u))) != 0u {
                 continue;
             }
-            let fragment = fragment_at(ribbon, line, paint, pixel);
+            let place = place_of(ribbon, line, pixel);
+            if place < 0.0 || place >= 1.0 {
+                continue;
+            }
+            let fragment = fragment_on(ribbon, line, paint, pixel, place);
             if fragment.alpha > 0u && fragment.nearness >= scene[own] {
                 keep(unit, own, fragment);
             }
@@ -277,11 +298,21 @@ fn go_on(unit: Unit, found: u32) {
     atomicStore(&total, 0u);
 }
 
-fn blend_tile(tile: WaitingTile, lane: u32) {
-    let corner = vec2(tile.tile % tile_columns(), tile.tile / tile_columns()) * TILE;
+// The pixels of a part of a tile: its first pixel, and the one after the last.
+fn area_of(own: Job) -> vec4<u32> {
+    let corner = vec2(own.tile.tile % tile_columns(), own.tile.tile / tile_columns()) * TILE;
+    // 1, 2 or 4 parts along an edge.
+    let along = select(select(1u, 2u, own.parts == 4u), 4u, own.parts == 16u);
+    let first = corner + vec2(own.part % along, own.part / along) * (TILE / along);
+    return vec4(first, min(first + TILE / along, view.size));
+}
+
+fn blend_part(own: Job, lane: u32) {
+    let area = area_of(own);
+    let corner = area.xy / TILE * TILE;
     let pixel = corner + vec2(lane % TILE, lane / TILE);
-    let is_inside = lane < PIXELS && all(pixel < view.size);
-    prepare(tile, lane, pixel, is_inside);
+    let is_inside = lane < PIXELS && all(pixel >= area.xy) && all(pixel < area.zw);
+    prepare(own.tile, lane, pixel, is_inside);
     var front = Front(vec3(0.0), 1.0);
     var fragments = 0u;
     loop {
@@ -290,7 +321,7 @@ fn blend_tile(tile: WaitingTile, lane: u32) {
             break;
         }
         for (var i = bounds[unit.first] + lane / SHARE; i < bounds[unit.end]; i += LANES / SHARE) {
-            collect(unit, corner, i, lane % SHARE);
+            collect(unit, area, i, lane % SHARE);
         }
         workgroupBarrier();
         let found = atomicLoad(&total);
@@ -331,14 +362,14 @@ fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
               @builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         let index = group.y * groups.x + group.x;
-        job = tile_of(index);
+        job = job_of(index);
         if index == 0u {
             counters.wanted = queue.references;
             counters.dropped = max(queue.references, tiles.capacity) - tiles.capacity;
         }
     }
-    let tile = workgroupUniformLoad(&job);
-    if tile.tile != NO_TILE {
-        blend_tile(tile, lane);
+    let own = workgroupUniformLoad(&job);
+    if own.tile.tile != NO_TILE {
+        blend_part(own, lane);
     }
 }

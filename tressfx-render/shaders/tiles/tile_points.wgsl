@@ -1,4 +1,4 @@
-// The vertices of a section before the eye, beside those of all other sections: so that one kernel can draw segments of all of
+// The vertices of a section on the screen, beside those of all other sections: so that one kernel can draw segments of all of
 // them; and the nearest vertex of each tile. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
@@ -18,10 +18,11 @@ const SAMPLES: u32 = 8192u;
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
 
-fn note_nearest(end: End) {
+// A vertex as `segments` reads it.
+fn point_of(end: End) -> vec4<f32> {
     let distance = -end.point.z;
-    if distance < view.lens.near {
-        return;
+    if distance <= view.lens.near {
+        return vec4(end.point, -max(end.radius, 1e-30));
     }
     var scale = 1.0;
     var nearness = 1.0 - view.lens.nearness_slope * distance;
@@ -29,15 +30,19 @@ fn note_nearest(end: End) {
         scale = 1.0 / distance;
         nearness = scale;
     }
-    let pixel = on_screen(view.lens, end.point.xy, scale);
-    if all(pixel >= vec2(0.0)) && all(pixel < vec2<f32>(view.size)) && nearness > 0.0 {
-        let tile = vec2<u32>(pixel) / TILE;
-        let place = tile.y * tile_columns() + tile.x;
-        let bits = bitcast<u32>(nearness);
-        // Most vertices are not the nearest, and need no turn at the counter.
-        if bits > atomicLoad(&nearests[place]) {
-            atomicMax(&nearests[place], bits);
-        }
+    return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
+}
+
+fn note_nearest(point: vec4<f32>) {
+    if point.w < 0.0 || any(point.xy < vec2(0.0)) || any(point.xy >= vec2<f32>(view.size)) || point.z <= 0.0 {
+        return;
+    }
+    let tile = vec2<u32>(point.xy) / TILE;
+    let place = tile.y * tile_columns() + tile.x;
+    let bits = bitcast<u32>(point.z);
+    // Most vertices are not the nearest, and need no turn at the counter.
+    if bits > atomicLoad(&nearests[place]) {
+        atomicMax(&nearests[place], bits);
     }
 }
 
@@ -48,12 +53,12 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     if i >= section.strands * section.vertices {
         return;
     }
-    let end = end_at(i % section.strands, i / section.strands);
     let sound = is_sound(positions[i].xyz);
-    points[i] = select(NOWHERE, vec4(end.point, end.radius), sound);
+    let point = select(NOWHERE, point_of(end_at(i % section.strands, i / section.strands)), sound);
+    points[i] = point;
     paints[i] = colors[i];
     let step = max(section.strands / SAMPLES, 1u);
     if sound && (i % section.strands) % step == 0u {
-        note_nearest(end);
+        note_nearest(point);
     }
 }

@@ -101,7 +101,7 @@ impl Kernels {
         [&points.kernel.shader, &depth.kernel.shader, &bin.kernel.shader, &alloc.kernel.shader, &blend.kernel.shader]
     }
 
-    /// The vertices of a section before the eye, from the place `first` on.
+    /// The vertices of a section on the screen, from the place `first` on.
     pub(crate) fn points(
         &mut self,
         list: &mut PassList,

@@ -21,10 +21,10 @@ const QUEUE_HEADER: u64 = 16 + 4 * CLASSES;
 /// Bytes of a grid of groups.
 const GROUPS_BYTES: u64 = 12;
 
-/// Vertices of all sections, before the eye.
+/// Vertices of all sections, on the screen.
 #[derive(Debug)]
 pub(crate) struct Vertices {
-    /// `vec4<f32>` a vertex: a point in the space of the eye, and a radius.
+    /// `vec4<f32>` a vertex, see `segments.wgsl`.
     pub(crate) points: BufferId,
     /// `vec2<u32>` a vertex: four half floats, colour and opacity.
     pub(crate) paints: BufferId,
