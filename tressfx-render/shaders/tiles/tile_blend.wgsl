@@ -12,14 +12,16 @@ import package::line::{fragment_on, is_drawn, line_of, middle_of, place_of, span
 import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
 import package::sums::{mean_color, optical_depth, transmittance_of, weighted};
-import package::tiles::{CLASSES, IS_NEAREST, SLICES, TILE, WaitingTile, WaitingTiles, begin_of, distance_of, parts_of, slice_of, tile_columns, tile_count, tiles};
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
+import package::tiles::{CLASSES, IS_NEAREST, RANGES, SLICES, TILE, WaitingTiles, distance_of, parts_of, tile_columns, tile_count, tiles};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, shares, slice_of, unit_from};
 
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
 // The end of each slice of each tile, a slice after the other.
 @group(0) @binding(6) var<storage, read> bins: array<u32>;
 @group(0) @binding(7) var<storage, read> queue: WaitingTiles;
 @group(0) @binding(8) var<storage, read> references: array<u32>;
+// Share of the slices up to the end of a range of a tile.
+@group(0) @binding(10) var<storage, read> tile_shares: array<f32>;
 // Premultiplied colour and alpha as four half floats, a pixel.
 @group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
 
@@ -38,14 +40,12 @@ const MEAN_UNIT: f32 = 256.0;
 
 // A tile, or a part of it.
 struct Job {
-    tile: WaitingTile,
+    tile: vec2<u32>,
     part: u32,
     parts: u32,
 }
 
 var<workgroup> job: Job;
-// Distance at which the slices of the tile begin.
-var<workgroup> begin: f32;
 var<workgroup> plan: Unit;
 // Fragments that were found in the unit, whether or not there was room for them.
 var<workgroup> total: atomic<u32>;
@@ -84,7 +84,7 @@ fn job_of(group: u32) -> Job {
         }
         rest -= size * parts;
     }
-    return Job(WaitingTile(NO_TILE, 0u, 0.0, 0u), 0u, 1u);
+    return Job(vec2(NO_TILE, 0u), 0u, 1u);
 }
 
 fn add_to_mean(pixel: u32, fragment: Fragment) {
@@ -101,7 +101,7 @@ fn add_to_mean(pixel: u32, fragment: Fragment) {
 
 fn keep(unit: Unit, pixel: u32, fragment: Fragment) {
     let key = min(depth_key(fragment.nearness), LAST_KEY - 1u);
-    let slice = slice_of(begin, distance_of(fragment.nearness));
+    let slice = slice_of(distance_of(fragment.nearness));
     if key < unit.low || key >= unit.high || slice < unit.first || slice >= unit.end {
         return;
     }
@@ -258,9 +258,12 @@ fn close(pixel: u32) {
     atomicOr(&closed[pixel / 32u], 1u << (pixel % 32u));
 }
 
-fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
+fn prepare(tile: vec2<u32>, lane: u32, pixel: vec2<u32>, is_inside: bool) {
     if lane < SLICES {
-        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile], tiles.capacity);
+        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.x], tiles.capacity);
+    }
+    if lane < RANGES {
+        shares[lane + 1u] = tile_shares[tile.x * RANGES + lane];
     }
     if lane < 2u {
         atomicStore(&closed[lane], 0u);
@@ -272,8 +275,8 @@ fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
         }
     }
     if lane == 0u {
-        bounds[0] = min(tile.first, tiles.capacity);
-        begin = begin_of(tile.nearest);
+        bounds[0] = min(tile.y, tiles.capacity);
+        shares[0] = 0.0;
         atomicStore(&total, 0u);
         atomicStore(&hairy_pixels, 0u);
     }
@@ -291,7 +294,7 @@ fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
 // Chooses what comes next; one lane comes here, all others wait.
 fn go_on(unit: Unit, found: u32) {
     let is_closed = (atomicLoad(&closed[0]) & atomicLoad(&closed[1])) == 0xffffffffu;
-    plan = next_unit(begin, unit, found);
+    plan = next_unit(unit, found);
     if is_closed {
         plan.first = SLICES;
     }
@@ -300,7 +303,7 @@ fn go_on(unit: Unit, found: u32) {
 
 // The pixels of a part of a tile: its first pixel, and the one after the last.
 fn area_of(own: Job) -> vec4<u32> {
-    let corner = vec2(own.tile.tile % tile_columns(), own.tile.tile / tile_columns()) * TILE;
+    let corner = vec2(own.tile.x % tile_columns(), own.tile.x / tile_columns()) * TILE;
     // 1, 2 or 4 parts along an edge.
     let along = select(select(1u, 2u, own.parts == 4u), 4u, own.parts == 16u);
     let first = corner + vec2(own.part % along, own.part / along) * (TILE / along);
@@ -369,7 +372,7 @@ fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         }
     }
     let own = workgroupUniformLoad(&job);
-    if own.tile.tile != NO_TILE {
+    if own.tile.x != NO_TILE {
         blend_part(own, lane);
     }
 }
