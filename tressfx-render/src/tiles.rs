@@ -157,7 +157,7 @@ impl TechniqueInstance for Tiles {
         self.memory.uniforms.upload(list, 2 * view.index, &uniforms);
         self.memory.clear(list, view.size);
         for (draw, &first) in draws.iter().zip(&layout.first_vertices) {
-            self.kernels.points(list, view, draw, &self.memory, first, targets.depth)?;
+            self.kernels.points(list, view, draw, &self.memory, first)?;
         }
         self.kernels.depth(list, view, &self.memory, targets.depth)?;
         self.kernels.bin(list, view, &self.memory, layout.segments, false)?;

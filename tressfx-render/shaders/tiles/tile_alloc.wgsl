@@ -3,7 +3,7 @@
 
 import package::grid::GROUP;
 import package::screen::view;
-import package::tiles::{CLASSES, Queue, ROW, SLICES, parts_of, tile_count};
+import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, parts_of, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
@@ -14,6 +14,8 @@ import package::tiles::{CLASSES, Queue, ROW, SLICES, parts_of, tile_count};
 // The grid of groups that takes a tile each.
 @group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
 
+// Nearness of the nearest vertex, a tile.
+@group(0) @binding(10) var<storage, read> nearests: array<f32>;
 
 const PARTS: u32 = 8u;
 const TILES: u32 = GROUP / PARTS;
@@ -128,6 +130,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     }
     if part == 0u {
         hairy[group_tile + place_of_tile] = tile;
-        queue.tiles[load_class * tile_count() + class_places[load_class] + position] = vec2(tile, first);
+        queue.tiles[load_class * tile_count() + class_places[load_class] + position] =
+            WaitingTile(tile, first, nearests[tile], 0u);
     }
 }

@@ -7,20 +7,20 @@ import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
 import package::segments::{ribbon_of, segment_at};
-import package::tiles::{IS_NEAREST, RANGES, TILE, distance_of, in_ranges, slice_in, tile_columns, tile_count, tiles};
+import package::tiles::{IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
 // Nearness of the scene, a tile.
 @group(0) @binding(6) var<storage, read> depths: array<f32>;
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
-// Share of the slices up to the end of a range of a tile.
-@group(0) @binding(9) var<storage, read> shares: array<f32>;
+// Nearness of the nearest vertex, a tile.
+@group(0) @binding(9) var<storage, read> nearests: array<f32>;
 
 // Pixels, and share of a distance, by which a part of a ribbon is taken larger than it is: more than rounding can move a
 // fragment.
 const PIXEL_MARGIN: f32 = 0.02;
-const DISTANCE_MARGIN: f32 = 2e-5;
+const DISTANCE_MARGIN: f32 = 4e-6;
 
 fn refer(bin: u32, reference: u32) {
     if tiles.stores == 0u {
@@ -47,22 +47,11 @@ fn range_of(ribbon: Ribbon, line: Line, span: Span, columns: vec2<i32>) -> vec2<
 // Distances of the nearest and the farthest, a little more than they are apart.
 fn distances_of(nearness: vec2<f32>) -> vec2<f32> {
     let distance = vec2(distance_of(nearness.y), distance_of(nearness.x));
-    var margin = DISTANCE_MARGIN * max(distance, vec2(tiles.depth));
+    var margin = DISTANCE_MARGIN * distance;
     if view.lens.is_perspective == 0u {
-        margin = vec2(DISTANCE_MARGIN * max(1.0 / view.lens.nearness_slope, tiles.depth));
+        margin = vec2(DISTANCE_MARGIN / view.lens.nearness_slope);
     }
     return vec2(distance.x - margin.x, distance.y + margin.y);
-}
-
-fn slice_of(tile: u32, distance: f32) -> u32 {
-    let place = in_ranges(distance);
-    let range = min(u32(place), RANGES - 1u);
-    let end = shares[tile * RANGES + range];
-    var start = 0.0;
-    if range > 0u {
-        start = shares[tile * RANGES + range - 1u];
-    }
-    return slice_in(vec2(start, end), place - f32(range));
 }
 
 fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
@@ -83,9 +72,10 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
             continue;
         }
-        let last = slice_of(tile, distances.y);
+        let begin = begin_of(nearests[tile]);
+        let last = slice_of(begin, distances.y);
         var flag = IS_NEAREST;
-        for (var slice = slice_of(tile, distances.x); slice <= last; slice++) {
+        for (var slice = slice_of(begin, distances.x); slice <= last; slice++) {
             refer(slice * tile_count() + tile, vertex | flag);
             flag = 0u;
         }

@@ -12,16 +12,14 @@ import package::line::{fragment_on, is_drawn, line_of, middle_of, place_of, span
 import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
 import package::sums::{mean_color, optical_depth, transmittance_of, weighted};
-import package::tiles::{CLASSES, IS_NEAREST, RANGES, SLICES, TILE, WaitingTiles, distance_of, parts_of, tile_columns, tile_count, tiles};
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, shares, slice_of, unit_from};
+import package::tiles::{CLASSES, IS_NEAREST, SLICES, TILE, WaitingTile, WaitingTiles, begin_of, distance_of, parts_of, slice_of, tile_columns, tile_count, tiles};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, bounds, next_unit, unit_from};
 
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
 // The end of each slice of each tile, a slice after the other.
 @group(0) @binding(6) var<storage, read> bins: array<u32>;
 @group(0) @binding(7) var<storage, read> queue: WaitingTiles;
 @group(0) @binding(8) var<storage, read> references: array<u32>;
-// Share of the slices up to the end of a range of a tile.
-@group(0) @binding(10) var<storage, read> tile_shares: array<f32>;
 // Premultiplied colour and alpha as four half floats, a pixel.
 @group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
 
@@ -40,21 +38,21 @@ const MEAN_UNIT: f32 = 256.0;
 
 // A tile, or a part of it.
 struct Job {
-    tile: vec2<u32>,
+    tile: WaitingTile,
     part: u32,
     parts: u32,
 }
 
 var<workgroup> job: Job;
+// Distance at which the slices of the tile begin.
+var<workgroup> begin: f32;
 var<workgroup> plan: Unit;
 // Fragments that were found in the unit, whether or not there was room for them.
 var<workgroup> total: atomic<u32>;
 var<workgroup> keys: array<u32, ENTRIES>;
 var<workgroup> colors: array<vec2<u32>, ENTRIES>;
-// Pixel and place among the fragments of the pixel; then, in order, the fragments.
+// Pixel and place among the fragments of the pixel.
 var<workgroup> places: array<u32, ENTRIES>;
-// Fragments by pixel.
-var<workgroup> grouped: array<u32, ENTRIES>;
 var<workgroup> counts: array<atomic<u32>, PIXELS>;
 var<workgroup> starts: array<u32, PIXELS>;
 // Optical depth, weight and colour of a mean; a pixel.
@@ -84,7 +82,7 @@ fn job_of(group: u32) -> Job {
         }
         rest -= size * parts;
     }
-    return Job(vec2(NO_TILE, 0u), 0u, 1u);
+    return Job(WaitingTile(NO_TILE, 0u, 0.0, 0u), 0u, 1u);
 }
 
 fn add_to_mean(pixel: u32, fragment: Fragment) {
@@ -101,7 +99,7 @@ fn add_to_mean(pixel: u32, fragment: Fragment) {
 
 fn keep(unit: Unit, pixel: u32, fragment: Fragment) {
     let key = min(depth_key(fragment.nearness), LAST_KEY - 1u);
-    let slice = slice_of(distance_of(fragment.nearness));
+    let slice = slice_of(begin, distance_of(fragment.nearness));
     if key < unit.low || key >= unit.high || slice < unit.first || slice >= unit.end {
         return;
     }
@@ -165,28 +163,33 @@ fn collect(unit: Unit, area: vec4<u32>, reference: u32, share: u32) {
     }
 }
 
-// A total order: what is the same in it gives the same picture in any order.
-fn is_before(a: u32, b: u32) -> bool {
-    if keys[a] != keys[b] {
-        return keys[a] < keys[b];
-    }
-    if any(colors[a] != colors[b]) {
-        return colors[a].x < colors[b].x || (colors[a].x == colors[b].x && colors[a].y < colors[b].y);
-    }
-    return a < b;
+// A fragment on its way through the sort.
+struct Sorted {
+    key: u32,
+    color: vec2<u32>,
+    pixel: u32,
+    place: u32,
 }
 
-// Where a fragment comes among all of the unit, by pixel and depth.
-fn rank_of(entry: u32) -> u32 {
-    let pixel = places[entry] >> 16u;
-    var rank = starts[pixel];
-    for (var i = starts[pixel]; i < starts[pixel] + atomicLoad(&counts[pixel]); i++) {
-        rank += u32(is_before(grouped[i], entry));
+// How many fragments of its pixel come before this one. The order is total: what is the same in it gives the same picture in
+// any order.
+fn rank_of(own: Sorted) -> u32 {
+    var rank = 0u;
+    let end = starts[own.pixel] + atomicLoad(&counts[own.pixel]);
+    for (var i = starts[own.pixel]; i < end; i++) {
+        let key = keys[i];
+        if key < own.key {
+            rank++;
+        } else if key == own.key {
+            let color = colors[i];
+            let before = color.x < own.color.x || (color.x == own.color.x && color.y < own.color.y);
+            rank += u32(before || (all(color == own.color) && i < own.place));
+        }
     }
     return rank;
 }
 
-// Leaves the fragments of the unit in `places`, in order. All lanes come here.
+// Puts the colours of the unit in order, by pixel and depth. All lanes come here.
 fn sort(count: u32, lane: u32) {
     // Sums within rows of pixels, then of the rows before.
     var before = 0u;
@@ -206,20 +209,32 @@ fn sort(count: u32, lane: u32) {
         starts[lane] = before;
     }
     workgroupBarrier();
-    for (var i = lane; i < count; i += LANES) {
-        grouped[starts[places[i] >> 16u] + (places[i] & 0xffffu)] = i;
-    }
-    workgroupBarrier();
-    var ranks: array<u32, OWN>;
+    // By pixel first: each lane carries its fragments to their pixels, and then to their ranks.
+    var own: array<Sorted, OWN>;
     for (var i = 0u; i < OWN; i++) {
-        if lane + i * LANES < count {
-            ranks[i] = rank_of(lane + i * LANES);
+        let entry = lane + i * LANES;
+        if entry < count {
+            let pixel = places[entry] >> 16u;
+            own[i] = Sorted(keys[entry], colors[entry], pixel, starts[pixel] + (places[entry] & 0xffffu));
         }
     }
     workgroupBarrier();
     for (var i = 0u; i < OWN; i++) {
         if lane + i * LANES < count {
-            places[ranks[i]] = lane + i * LANES;
+            keys[own[i].place] = own[i].key;
+            colors[own[i].place] = own[i].color;
+        }
+    }
+    workgroupBarrier();
+    for (var i = 0u; i < OWN; i++) {
+        if lane + i * LANES < count {
+            own[i].place = starts[own[i].pixel] + rank_of(own[i]);
+        }
+    }
+    workgroupBarrier();
+    for (var i = 0u; i < OWN; i++) {
+        if lane + i * LANES < count {
+            colors[own[i].place] = own[i].color;
         }
     }
     workgroupBarrier();
@@ -234,7 +249,7 @@ fn blend_sorted(front: Front, pixel: u32) -> Front {
     var blended = front;
     let end = starts[pixel] + atomicLoad(&counts[pixel]);
     for (var i = starts[pixel]; i < end && blended.transmittance >= tiles.closed_below; i++) {
-        let color = colors[places[i]];
+        let color = colors[i];
         blended = over(blended, packed_color(color), f32(packed_alpha(color)) / OPAQUE);
     }
     return blended;
@@ -258,12 +273,9 @@ fn close(pixel: u32) {
     atomicOr(&closed[pixel / 32u], 1u << (pixel % 32u));
 }
 
-fn prepare(tile: vec2<u32>, lane: u32, pixel: vec2<u32>, is_inside: bool) {
+fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
     if lane < SLICES {
-        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.x], tiles.capacity);
-    }
-    if lane < RANGES {
-        shares[lane + 1u] = tile_shares[tile.x * RANGES + lane];
+        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile], tiles.capacity);
     }
     if lane < 2u {
         atomicStore(&closed[lane], 0u);
@@ -275,8 +287,8 @@ fn prepare(tile: vec2<u32>, lane: u32, pixel: vec2<u32>, is_inside: bool) {
         }
     }
     if lane == 0u {
-        bounds[0] = min(tile.y, tiles.capacity);
-        shares[0] = 0.0;
+        bounds[0] = min(tile.first, tiles.capacity);
+        begin = begin_of(tile.nearest);
         atomicStore(&total, 0u);
         atomicStore(&hairy_pixels, 0u);
     }
@@ -294,7 +306,7 @@ fn prepare(tile: vec2<u32>, lane: u32, pixel: vec2<u32>, is_inside: bool) {
 // Chooses what comes next; one lane comes here, all others wait.
 fn go_on(unit: Unit, found: u32) {
     let is_closed = (atomicLoad(&closed[0]) & atomicLoad(&closed[1])) == 0xffffffffu;
-    plan = next_unit(unit, found);
+    plan = next_unit(begin, unit, found);
     if is_closed {
         plan.first = SLICES;
     }
@@ -303,7 +315,7 @@ fn go_on(unit: Unit, found: u32) {
 
 // The pixels of a part of a tile: its first pixel, and the one after the last.
 fn area_of(own: Job) -> vec4<u32> {
-    let corner = vec2(own.tile.x % tile_columns(), own.tile.x / tile_columns()) * TILE;
+    let corner = vec2(own.tile.tile % tile_columns(), own.tile.tile / tile_columns()) * TILE;
     // 1, 2 or 4 parts along an edge.
     let along = select(select(1u, 2u, own.parts == 4u), 4u, own.parts == 16u);
     let first = corner + vec2(own.part % along, own.part / along) * (TILE / along);
@@ -372,7 +384,7 @@ fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         }
     }
     let own = workgroupUniformLoad(&job);
-    if own.tile.x != NO_TILE {
+    if own.tile.tile != NO_TILE {
         blend_part(own, lane);
     }
 }

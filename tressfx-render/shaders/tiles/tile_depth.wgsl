@@ -1,40 +1,15 @@
-// The nearness of the farthest that the opaque scene shows in each tile: what is behind it is not referred to. And how the
-// slices of the tile are shared out among the ranges of depth: by the vertices in them, with less weight where hair in front of
-// them hides them. Eight lanes a tile, one a row of pixels.
+// The nearness of the farthest that the opaque scene shows in each tile: what is behind it is not referred to. Eight lanes a
+// tile, one a row of pixels.
 
 import package::grid::GROUP;
 import package::screen::{scene_nearness, view};
-import package::tiles::{RANGES, TILE, tile_columns, tile_count, tiles};
+import package::tiles::{TILE, tile_columns, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> depths: array<f32>;
-// A range of a tile: vertices, and then, as bits of a float, the share of the slices up to its end.
-@group(0) @binding(7) var<storage, read_write> shares: array<u32>;
-
-// The share of the slices that all ranges have alike, hair or none.
-const EVEN: f32 = 0.1;
 
 const TILES: u32 = GROUP / TILE;
 
 var<workgroup> farthest: array<atomic<u32>, TILES>;
-
-// Shares the slices of a tile out.
-fn share_out(tile: u32) {
-    var weights: array<f32, RANGES>;
-    var before = 0.0;
-    var sum = 0.0;
-    for (var i = 0u; i < RANGES; i++) {
-        let vertices = f32(shares[tile * RANGES + i]);
-        weights[i] = vertices / (1.0 + before / tiles.layer);
-        before += vertices;
-        sum += weights[i];
-    }
-    let even = select(1.0, EVEN, sum > 0.0) / f32(RANGES);
-    var share = 0.0;
-    for (var i = 0u; i < RANGES; i++) {
-        share += even + (1.0 - EVEN) * weights[i] / max(sum, 1e-10);
-        shares[tile * RANGES + i] = bitcast<u32>(min(share, 1.0));
-    }
-}
 
 @compute @workgroup_size(GROUP)
 fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -58,6 +33,5 @@ fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     workgroupBarrier();
     if lane % TILE == 0u && tile < tile_count() {
         depths[tile] = bitcast<f32>(atomicLoad(&farthest[own]));
-        share_out(tile);
     }
 }

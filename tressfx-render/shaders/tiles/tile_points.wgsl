@@ -1,19 +1,19 @@
 // The vertices of a section on the screen, beside those of all other sections: so that one kernel can draw segments of all of
-// them; and how many vertices are in each range of depth of each tile. One thread a vertex.
+// them; and the nearest vertex of each tile. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
 import package::ribbon::{End, is_sound, on_screen};
-import package::screen::{scene_nearness, view};
+import package::screen::view;
 import package::strands::{colors, end_at, positions, section};
-import package::tiles::{RANGES, TILE, distance_of, in_ranges, tile_columns};
+import package::tiles::{TILE, tile_columns};
 
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
 
-// Vertices, a range of a tile.
-@group(0) @binding(8) var<storage, read_write> shares: array<atomic<u32>>;
+// Nearness, a tile: bits of a number that is not negative.
+@group(0) @binding(8) var<storage, read_write> nearests: array<atomic<u32>>;
 
-// The vertices of so many strands are counted: the counts decide about speed alone.
+// The nearest vertex is looked for among so many strands: it decides about speed alone.
 const SAMPLES: u32 = 8192u;
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
@@ -33,17 +33,17 @@ fn point_of(end: End) -> vec4<f32> {
     return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
 }
 
-// Counts a vertex in its tile and range, unless the scene hides it.
-fn count(point: vec4<f32>) {
-    if point.w < 0.0 || any(point.xy < vec2(0.0)) || any(point.xy >= vec2<f32>(view.size)) {
+fn note_nearest(point: vec4<f32>) {
+    if point.w < 0.0 || any(point.xy < vec2(0.0)) || any(point.xy >= vec2<f32>(view.size)) || point.z <= 0.0 {
         return;
     }
-    let pixel = vec2<u32>(point.xy);
-    if point.z < scene_nearness(pixel) {
-        return;
+    let tile = vec2<u32>(point.xy) / TILE;
+    let place = tile.y * tile_columns() + tile.x;
+    let bits = bitcast<u32>(point.z);
+    // Most vertices are not the nearest, and need no turn at the counter.
+    if bits > atomicLoad(&nearests[place]) {
+        atomicMax(&nearests[place], bits);
     }
-    let tile = pixel.y / TILE * tile_columns() + pixel.x / TILE;
-    atomicAdd(&shares[tile * RANGES + min(u32(in_ranges(distance_of(point.z))), RANGES - 1u)], 1u);
 }
 
 @compute @workgroup_size(GROUP)
@@ -59,6 +59,6 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     paints[i] = colors[i];
     let step = max(section.strands / SAMPLES, 1u);
     if sound && (i % section.strands) % step == 0u {
-        count(point);
+        note_nearest(point);
     }
 }

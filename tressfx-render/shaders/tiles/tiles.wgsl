@@ -6,8 +6,6 @@ import package::screen::view;
 const TILE: u32 = 8u;
 // Slices of depth; each holds references to the segments that touch it.
 const SLICES: u32 = 64u;
-// Ranges of the depth of the groom, alike in all tiles. In each tile they have as many slices as the hair in them needs.
-const RANGES: u32 = 16u;
 // Kinds of tiles by the number of their references, the heaviest last.
 const CLASSES: u32 = 8u;
 // Tiles of these classes and heavier ones are divided into 4 and into 16 parts, each for a group: one alone would take too long.
@@ -31,18 +29,27 @@ struct TilesUniform {
     depth: f32,
     // Transmittance of a pixel below which nothing more is seen.
     closed_below: f32,
-    // Vertices of a tile, of those that are sampled, behind which little is seen.
-    layer: f32,
+    unused: u32,
     // Of each section: its first segment, its first vertex, its strands.
     layouts: array<vec4<u32>, MAX_SECTIONS>,
 }
 
-@group(0) @binding(12) var<uniform> tiles: TilesUniform;
+@group(0) @binding(1) var<uniform> tiles: TilesUniform;
 
 // Groups in a row of the grid that blends tiles.
 const ROW: u32 = 32768u;
 
-// Tiles with references, by class. A tile is its number and its first reference.
+// A tile with references.
+struct WaitingTile {
+    tile: u32,
+    // The first reference.
+    first: u32,
+    // Nearness of the nearest vertex; 0 where there is none.
+    nearest: f32,
+    unused: u32,
+}
+
+// Tiles with references, by class.
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
@@ -51,7 +58,7 @@ struct Queue {
     unused: array<u32, 2>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
-    tiles: array<vec2<u32>>,
+    tiles: array<WaitingTile>,
 }
 
 // The same where nothing is added any more.
@@ -60,7 +67,7 @@ struct WaitingTiles {
     groups: u32,
     unused: array<u32, 2>,
     sizes: array<u32, CLASSES>,
-    tiles: array<vec2<u32>>,
+    tiles: array<WaitingTile>,
 }
 
 // Parts of a tile.
@@ -90,12 +97,23 @@ fn nearness_at(distance: f32) -> f32 {
     return 1.0 - view.lens.nearness_slope * distance;
 }
 
-// Where a distance is in the depth of the groom, in ranges: from 0 to RANGES.
-fn in_ranges(distance: f32) -> f32 {
-    return clamp((distance - tiles.nearest) / tiles.depth * f32(RANGES), 0.0, f32(RANGES));
+// Where the slices of a tile begin: `nearness` is that of its nearest vertex, or 0 where there is none.
+fn begin_of(nearness: f32) -> f32 {
+    if nearness <= 0.0 {
+        return tiles.nearest;
+    }
+    return clamp(distance_of(nearness), tiles.nearest, tiles.nearest + tiles.depth);
 }
 
-// The slice of a distance that is in the range between `shares`, the shares of the slices before and up to the end of it.
-fn slice_in(shares: vec2<f32>, part: f32) -> u32 {
-    return u32(clamp(f32(SLICES) * mix(shares.x, shares.y, part), 0.0, f32(SLICES - 1u)));
+// The slice of a distance, from 0 to SLICES - 1, where the slices begin at `begin`. They are thin in front, where hair is seen,
+// and grow. What lies before the first and behind the last belongs to them.
+fn slice_of(begin: f32, distance: f32) -> u32 {
+    let part = max(distance - begin, 0.0) / tiles.depth;
+    return u32(min(f32(SLICES) * sqrt(part), f32(SLICES - 1u)));
+}
+
+// Where a slice begins.
+fn slice_distance(begin: f32, slice: u32) -> f32 {
+    let part = f32(slice) / f32(SLICES);
+    return begin + part * part * tiles.depth;
 }

@@ -1,10 +1,10 @@
 // What a group blends at once: slices of a tile, or a range of depths of one slice.
 
 import package::fragment::depth_key;
-import package::tiles::{RANGES, SLICES, in_ranges, nearness_at, slice_in, tiles};
+import package::tiles::{SLICES, nearness_at, slice_distance};
 
 // Fragments that a group has room for.
-const ENTRIES: u32 = 692u;
+const ENTRIES: u32 = 868u;
 // Above all keys of fragments.
 const LAST_KEY: u32 = 0xffffffffu;
 // Of its room, what a unit should fill.
@@ -30,26 +30,6 @@ struct Unit {
 // Where the references of each slice of the tile begin, and where the last ones end.
 var<workgroup> bounds: array<u32, SLICES + 1u>;
 
-// Share of the slices of the tile before each range, and of all.
-var<workgroup> shares: array<f32, RANGES + 1u>;
-
-fn slice_of(distance: f32) -> u32 {
-    let place = in_ranges(distance);
-    let range = min(u32(place), RANGES - 1u);
-    return slice_in(vec2(shares[range], shares[range + 1u]), place - f32(range));
-}
-
-// Where a slice begins, or nearly so.
-fn slice_distance(slice: u32) -> f32 {
-    let share = f32(slice) / f32(SLICES);
-    var range = 0u;
-    while range < RANGES - 1u && shares[range + 1u] <= share {
-        range++;
-    }
-    let part = (share - shares[range]) / max(shares[range + 1u] - shares[range], 1e-10);
-    return tiles.nearest + tiles.depth * (f32(range) + saturate(part)) / f32(RANGES);
-}
-
 // As many slices from this one on as should fill the list.
 fn unit_from(first: u32, rate: f32) -> Unit {
     let room = u32(FILL * f32(ENTRIES) / rate);
@@ -60,44 +40,44 @@ fn unit_from(first: u32, rate: f32) -> Unit {
     return Unit(first, end, 0u, LAST_KEY, rate, 0u);
 }
 
-fn first_key(slice: u32) -> u32 {
+fn first_key(begin: f32, slice: u32) -> u32 {
     if slice == 0u {
         return 0u;
     }
-    return depth_key(nearness_at(slice_distance(slice)));
+    return depth_key(nearness_at(slice_distance(begin, slice)));
 }
 
-fn end_key(slice: u32) -> u32 {
+fn end_key(begin: f32, slice: u32) -> u32 {
     if slice == SLICES - 1u {
         return LAST_KEY;
     }
-    return first_key(slice + 1u);
+    return first_key(begin, slice + 1u);
 }
 
 // The unit behind one that has been blended.
-fn behind(unit: Unit, rate: f32) -> Unit {
+fn behind(begin: f32, unit: Unit, rate: f32) -> Unit {
     if unit.high == LAST_KEY {
         return unit_from(unit.end, rate);
     }
-    let step = unit.high - max(min(first_key(unit.first), unit.high), unit.low);
+    let step = unit.high - max(min(first_key(begin, unit.first), unit.high), unit.low);
     let room = LAST_KEY - unit.high;
     var high = unit.high + min(2u * min(step, LAST_KEY / 2u) + 1u, room);
-    if high >= end_key(unit.first) {
+    if high >= end_key(begin, unit.first) {
         high = LAST_KEY;
     }
     return Unit(unit.first, unit.end, unit.high, high, rate, 0u);
 }
 
 // Half of a unit that had too many fragments.
-fn half_of(unit: Unit, rate: f32) -> Unit {
+fn half_of(begin: f32, unit: Unit, rate: f32) -> Unit {
     if unit.end - unit.first > 1u {
         return Unit(unit.first, unit.first + (unit.end - unit.first) / 2u, 0u, LAST_KEY, rate, 0u);
     }
     if unit.high - unit.low <= 1u {
         return Unit(unit.first, unit.end, unit.low, unit.high, rate, 1u);
     }
-    var low = max(unit.low, first_key(unit.first));
-    var high = min(unit.high, end_key(unit.first));
+    var low = max(unit.low, first_key(begin, unit.first));
+    var high = min(unit.high, end_key(begin, unit.first));
     if low >= high {
         low = unit.low;
         high = unit.high;
@@ -107,14 +87,14 @@ fn half_of(unit: Unit, rate: f32) -> Unit {
 }
 
 // What comes after a unit in which so many fragments were found.
-fn next_unit(unit: Unit, found: u32) -> Unit {
+fn next_unit(begin: f32, unit: Unit, found: u32) -> Unit {
     var rate = unit.rate;
     if unit.high == LAST_KEY && unit.low == 0u {
         let references = bounds[unit.end] - bounds[unit.first];
         rate = max(f32(found) / f32(max(references, 1u)), LEAST_RATE);
     }
     if found > ENTRIES && unit.is_mean == 0u {
-        return half_of(unit, rate);
+        return half_of(begin, unit, rate);
     }
-    return behind(unit, rate);
+    return behind(begin, unit, rate);
 }

@@ -52,8 +52,8 @@ impl<K: Eq + std::hash::Hash> Pass<K> {
 /// The kernels in the order in which they run; `bin` runs before and behind `alloc`.
 #[derive(Debug)]
 pub(crate) struct Kernels {
-    /// By section, its place and the scene.
-    points: Pass<(BufferId, u32, TextureId)>,
+    /// By section and its place.
+    points: Pass<(BufferId, u32)>,
     /// By the scene.
     depth: Pass<TextureId>,
     /// By whether it stores.
@@ -109,24 +109,21 @@ impl Kernels {
         draw: &SectionDraw,
         memory: &Memory,
         first: u32,
-        scene_depth: TextureId,
     ) -> Result<()> {
         let (strands, vertices) = (draw.strands, u64::from(draw.strands.buffers.shape.strand_vertices()));
         let first_vertex = u64::from(first);
         let resources = [
             ("view", view.uniform),
             ("section", strands.uniform.into()),
-            ("scene_depth", scene_depth.into()),
-            ("tiles", memory.uniforms.binding(2 * view.index)),
             ("positions", strands.buffers.positions.into()),
             ("colors", strands.colors.into()),
             ("thickness", strands.buffers.thickness.into()),
             ("points", memory.vertices.points.range(16 * first_vertex, 16 * vertices)),
             ("paints", memory.vertices.paints.range(8 * first_vertex, 8 * vertices)),
-            ("shares", memory.screen.shares.into()),
+            ("nearests", memory.screen.nearests.into()),
         ];
         let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
-        self.points.record(list, (view.index, (strands.colors, first, scene_depth)), grid, &resources)
+        self.points.record(list, (view.index, (strands.colors, first)), grid, &resources)
     }
 
     /// The farthest that the scene shows in each tile.
@@ -138,13 +135,7 @@ impl Kernels {
         scene_depth: TextureId,
     ) -> Result<()> {
         let resources =
-            [
-            ("view", view.uniform),
-            ("tiles", memory.uniforms.binding(2 * view.index)),
-            ("scene_depth", scene_depth.into()),
-            ("depths", memory.screen.depths.into()),
-            ("shares", memory.screen.shares.into()),
-        ];
+            [("view", view.uniform), ("scene_depth", scene_depth.into()), ("depths", memory.screen.depths.into())];
         let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
         self.depth.record(list, (view.index, scene_depth), grid, &resources)
     }
@@ -165,7 +156,7 @@ impl Kernels {
             ("depths", memory.screen.depths.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
-            ("shares", memory.screen.shares.into()),
+            ("nearests", memory.screen.nearests.into()),
         ];
         self.bin.record(list, (view.index, stores), Grid::for_threads(segments, GROUP), &resources)
     }
@@ -179,6 +170,7 @@ impl Kernels {
             ("hairy", memory.screen.resolved.tiles.into()),
             ("tile_vertices", memory.screen.resolved.draw.into()),
             ("groups_of_tiles", memory.groups.into()),
+            ("nearests", memory.screen.nearests.into()),
         ];
         let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
         self.alloc.record(list, (view.index, ()), grid, &resources)
@@ -203,7 +195,6 @@ impl Kernels {
             ("queue", memory.screen.queue.into()),
             ("references", memory.references.buffer.into()),
             ("resolved", memory.screen.resolved.colors.into()),
-            ("tile_shares", memory.screen.shares.into()),
         ];
         let bindings = self.blend.bound.get((view.index, scene_depth), || self.blend.kernel.bind(&resources))?;
         list.compute_indirect(&self.blend.kernel, &bindings, memory.groups, 0);

@@ -37,8 +37,8 @@ gpu_struct! {
         pub depth: f32,
         /// Transmittance of a pixel below which nothing more is seen.
         pub closed_below: f32,
-        /// Vertices of a tile, of those that are sampled, behind which little is seen.
-        pub layer: f32,
+        /// Nothing.
+        pub unused: u32,
         /// Of each section: its first segment, its first vertex, its strands, nothing.
         pub layouts: [[u32; 4]; MAX_SECTIONS],
     }
@@ -101,20 +101,11 @@ impl Layout {
             nearest,
             depth: farthest - nearest,
             closed_below: desc.closed_below,
-            layer: layer(draws),
+            unused: 0,
             layouts: self.sections,
         };
         [uniform(0), uniform(1)]
     }
-}
-
-/// Strands of a section whose vertices are sampled; `SAMPLES` in `tile_points.wgsl`.
-const SAMPLES: u32 = 8192;
-
-/// How many sampled vertices make a tile of 64 pixels opaque, roughly: each stands for those of all strands that are not sampled.
-fn layer(draws: &[SectionDraw]) -> f32 {
-    let step = draws.iter().map(|draw| (draw.strands.buffers.shape.strands() / SAMPLES).max(1)).max().unwrap_or(1);
-    (128.0 / step as f32).max(4.0)
 }
 
 /// The distances from the plane of the eye between which the sections are expected; the second is larger.

@@ -15,9 +15,6 @@ use crate::views::MAX_VIEWS;
 /// Kinds of tiles by the number of their references.
 const CLASSES: u64 = 8;
 
-/// Ranges of depth.
-const RANGES: u64 = 16;
-
 /// Bytes of the queue before its tiles.
 const QUEUE_HEADER: u64 = 16 + 4 * CLASSES;
 
@@ -70,8 +67,8 @@ pub(crate) struct Screen {
     pub(crate) bins: BufferId,
     /// `f32` a tile: the nearness of the farthest that the scene shows.
     pub(crate) depths: BufferId,
-    /// `f32` a range of each tile: how the slices are shared out.
-    pub(crate) shares: BufferId,
+    /// `f32` a tile: the nearness of its nearest vertex.
+    pub(crate) nearests: BufferId,
     /// Tiles that have references.
     pub(crate) queue: BufferId,
     /// The colours of the pixels.
@@ -80,12 +77,12 @@ pub(crate) struct Screen {
 
 impl Screen {
     fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
-        let [bins, depths, queue, shares] = sizes(size);
+        let [bins, depths, queue] = sizes(size);
         Ok(Self {
             size,
             bins: storage(backend, "hair.render.bins", bins)?,
             depths: storage(backend, "hair.render.tile_depths", depths)?,
-            shares: storage(backend, "hair.render.shares", shares)?,
+            nearests: storage(backend, "hair.render.nearests", depths)?,
             queue: storage(backend, "hair.render.queue", queue)?,
             resolved: Resolved::new(backend, size)?,
         })
@@ -93,16 +90,16 @@ impl Screen {
 
     fn destroy(self, backend: &mut dyn Backend) {
         self.resolved.destroy(backend);
-        [self.bins, self.depths, self.shares, self.queue]
+        [self.bins, self.depths, self.nearests, self.queue]
             .into_iter()
             .for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
-/// Bytes of bins, depths, queue and shares.
-fn sizes(size: [u32; 2]) -> [u64; 4] {
+/// Bytes of bins, depths, which are as many as nearests, and queue.
+fn sizes(size: [u32; 2]) -> [u64; 3] {
     let tiles = u64::from(tile_count(size));
-    [4 * u64::from(SLICES) * tiles, 4 * tiles, QUEUE_HEADER + 8 * CLASSES * tiles, 4 * RANGES * tiles]
+    [4 * u64::from(SLICES) * tiles, 4 * tiles, QUEUE_HEADER + 16 * CLASSES * tiles]
 }
 
 /// Bytes of the largest buffer that a screen of this size takes.
@@ -170,6 +167,7 @@ impl Memory {
 
     pub(crate) fn bytes(&self) -> u64 {
         sizes(self.screen.size).iter().sum::<u64>()
+            + sizes(self.screen.size)[1]
             + Resolved::bytes(self.screen.size)
             + Vertices::BYTES * self.vertices.count
             + References::BYTES * u64::from(self.references.count)
@@ -177,11 +175,11 @@ impl Memory {
             + ViewCounters::BYTES
     }
 
-    /// Empties bins, shares and the queue for a view of this size.
+    /// Empties bins, nearests and the queue for a view of this size.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
-        list.clear(self.screen.shares, 0, sizes(size)[3]);
+        list.clear(self.screen.nearests, 0, sizes(size)[1]);
         list.clear(self.screen.queue, 0, QUEUE_HEADER);
         list.clear(self.groups, 0, GROUPS_BYTES);
     }
