@@ -63,8 +63,8 @@ fn buried(vertices: u32) -> Strands {
 /// A step in which the head moves.
 fn step(info: &SectionInfo, head: Pose) -> Step {
     let sub_step = SubStep {
-        turn: Quat::from_rotation_z(0.002),
-        shift: Vec3::X * 0.0003,
+        head_turn: Quat::from_rotation_z(0.002),
+        center_displacement: Vec3::X * 0.0003,
         ..SubStep::at_rest(1.0 / 120.0, head.rotation)
     };
     Step::new(&limp(), info, &sub_step, None)

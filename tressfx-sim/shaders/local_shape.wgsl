@@ -55,7 +55,7 @@ fn walk(strand: u32) {
     positions[tip * step.strands + strand] = from_root(-root, edge.here);
 }
 
-/// An edge that has made its share of the way to its rest pose, and the frame behind it.
+/// An edge that has been moved by its share of the distance to its rest pose, and the frame behind it.
 fn bent(edge: BentEdge, rest_edge: vec3<f32>) -> BentEdge {
     var bent = edge;
     let goal = rotate(edge.frame, rest_edge);

@@ -26,7 +26,7 @@ pub struct Simulation<'a> {
 #[derive(Debug)]
 struct Section<'a> {
     strands: &'a Strands,
-    /// About the centre of the groom.
+    /// Relative to the centre of the groom.
     rest: Vec<Vec4>,
     params: SimParams,
     info: SectionInfo,
@@ -106,7 +106,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Positions of all strands of a section about the centre of the groom, strand-major.
+    /// Positions of all strands of a section relative to the centre of the groom, strand-major.
     ///
     /// # Panics
     /// If there is no such section.
