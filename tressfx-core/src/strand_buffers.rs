@@ -45,7 +45,7 @@ impl StrandShape {
         self.strands() * (self.vertices - 1)
     }
 
-    /// The place of a vertex in a buffer that holds all strands: vertex-major, so that threads that walk neighbouring
+    /// The place of a vertex in a buffer that holds all strands: vertex-major, so that threads that go along neighbouring
     /// strands read neighbouring addresses.
     pub fn index(&self, strand: u32, vertex: u32) -> u32 {
         vertex * self.strands() + strand
