@@ -8,6 +8,13 @@ use tressfx_core::error::{Error, Result};
 use tressfx_core::pass::Grid;
 use wgpu::{DeviceType, Features, Limits};
 
+/// How a device of one's own is opened.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WgpuOptions {
+    /// A part of the adapter's name, in whatever case; without it the fastest is taken.
+    pub adapter: Option<String>,
+}
+
 /// The adapters of the system, as people name them: `NAME (API, kind, driver)`.
 pub fn adapters() -> Vec<String> {
     pollster::block_on(found()).iter().map(|adapter| describe(&adapter.get_info())).collect()
@@ -38,8 +45,9 @@ fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({}, {:?}, {})", info.name, info.backend, info.device_type, driver.trim())
 }
 
-/// Opens the fastest adapter, or the first whose description contains `wanted`.
-pub(crate) async fn open(wanted: Option<&str>) -> Result<(wgpu::Device, wgpu::Queue)> {
+/// Opens the adapter that is asked for: the first whose description contains the name, or the fastest.
+pub(crate) async fn open(options: &WgpuOptions) -> Result<(wgpu::Device, wgpu::Queue)> {
+    let wanted = options.adapter.as_deref();
     let adapters = found().await;
     let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
     let matches = |name: &str| wanted.is_none_or(|wanted| name.to_lowercase().contains(&wanted.to_lowercase()));
