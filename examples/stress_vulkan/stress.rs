@@ -28,7 +28,7 @@ pub(crate) struct Figures {
     pub(crate) two_queues: bool,
     pub(crate) submitted: u64,
     pub(crate) thrown_away: u64,
-    pub(crate) minimised: u64,
+    pub(crate) minimized: u64,
     pub(crate) resizes: u64,
     pub(crate) grooms: u64,
     /// Lists that were recorded after something that they name was destroyed.
@@ -195,7 +195,7 @@ impl Stress {
         let (stage, head) = (&self.stages[self.size], head(frame as f64 * DT));
         let nothing = View::new(Mat4::IDENTITY, Mat4::IDENTITY, stage.view.depth(), [0, 0])?;
         let view = if self.images.is_some() { stage.view } else { nothing };
-        self.figures.minimised += u64::from(view.is_empty());
+        self.figures.minimized += u64::from(view.is_empty());
         let mut lists = Vec::new();
         let mut must_run = false;
         for groom in &mut self.grooms {

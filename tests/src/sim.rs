@@ -104,7 +104,7 @@ impl Rig {
     }
 
     /// Its capsules as kernels see them: relative to the centre of the groom, and still as the head sees them.
-    pub fn centred(&self) -> Vec<(Capsule, CapsuleMotion)> {
+    pub fn centered(&self) -> Vec<(Capsule, CapsuleMotion)> {
         let center = self.sim.center();
         let relative = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
         self.capsules.iter().map(|capsule| (relative(capsule), CapsuleMotion::STILL)).collect()
@@ -112,7 +112,7 @@ impl Rig {
 
     /// Runs one kernel of all sections, with these steps for the first section and all capsules.
     pub fn stage(&mut self, step: &Step, stage: Stage) {
-        let capsules = self.centred();
+        let capsules = self.centered();
         let step = step.with_capsules(0, capsules.len() as u32);
         self.run(|sim, list| {
             sim.record_capsules(list, &capsules).expect("as many as it was made for");

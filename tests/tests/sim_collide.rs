@@ -94,7 +94,7 @@ fn collided(rig: &mut Rig, head: Pose) -> ([Pair; 2], usize) {
     rig.stage(&step, Stage::Collide);
     let vertices = rig.strands[0].vertices as usize;
     let rest = rig.rest(0);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let before = positions.clone();
     for guide in 0..GUIDES {
         let range = guide * vertices..(guide + 1) * vertices;
@@ -221,7 +221,7 @@ fn jump_between(one: &State, other: &State, after: impl Fn(&State) -> State) -> 
 
 /// A bounded turn takes several sub-steps, most of them where the strand points exactly at the centre.
 #[test]
-fn strands_that_point_at_a_centre_get_out() {
+fn strands_that_point_at_a_center_get_out() {
     for vertices in VERTICES {
         let Some(mut rig) = rig(aimed(vertices), limp(), &[BALL]) else { return };
         let motion = Motion::still(&rig.strands[0]);

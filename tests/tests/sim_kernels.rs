@@ -87,7 +87,7 @@ fn check(name: &str, strands: Strands) {
     let (step, motion) = (step(&strands), Motion::wild(&strands));
     let Some(mut rig) = rig(strands, params(), &capsules) else { return };
     rig.play(&motion, 0.2, 60);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let mut touched = false;
     for &stage in Solver::TressFx.stages() {
         let before = state(&mut rig);

@@ -4,8 +4,8 @@
 //! whose state the CPU can read at any time. So nobody has to tell the backend when a frame begins or how many frames are in
 //! flight. When the event is set, the recording has run, and the bytes of its read-backs are there. But the command buffer
 //! may still be executing, and Vulkan forbids to destroy anything that it names. The engine tells the end of the command
-//! buffer with [`VulkanBackend::mark_finished`], or with [`VulkanBackend::mark_discarded_after`] that it was thrown away. In this module "has
-//! run" means that the event is set, and "is over" that the engine has told the end.
+//! buffer with [`VulkanBackend::mark_finished`], or with [`VulkanBackend::mark_discarded_after`] that it was thrown away. In
+//! this module "has run" means that the event is set, and "is over" that the engine has told the end.
 
 use std::collections::{HashSet, VecDeque};
 

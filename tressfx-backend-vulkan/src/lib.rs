@@ -15,12 +15,13 @@
 //! * Barriers come from `tressfx_core::hazards`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
 //!   earlier one, and no barrier before other commands.
 //! * Imported buffers and textures are never destroyed here; `destroy` only stops tracking them. A recording that uses one
-//!   leaves it in the layout and use that were agreed when it was imported; a recording that does not use it does not touch
+//!   leaves it in the final use (and layout) that it was imported with; a recording that does not use it does not touch
 //!   it.
 //! * On an engine's device only [`run`](tressfx_core::backend::Run::run) waits. A resource that is destroyed while the GPU
 //!   may still use it is freed once the engine has said that the command buffers that may name it have finished: it calls
 //!   [`mark_finished`](VulkanBackend::mark_finished) once a frame.
-//! * If the engine throws a command buffer away, [`mark_discarded_after`](VulkanBackend::mark_discarded_after) undoes what was recorded into it.
+//! * If the engine throws a command buffer away, [`mark_discarded_after`](VulkanBackend::mark_discarded_after) undoes what
+//!   was recorded into it.
 //! * There is no lock inside: one thread at a time may use a backend, and one at a time its queue.
 //!
 //! The crate decides nothing about hair and opens no window.

@@ -17,10 +17,10 @@ pub struct WgpuOptions {
 
 /// The adapters of the system, as people name them: `NAME (API, kind, driver)`.
 pub fn adapters() -> Vec<String> {
-    pollster::block_on(found()).iter().map(|adapter| describe(&adapter.get_info())).collect()
+    pollster::block_on(all_adapters()).iter().map(|adapter| describe(&adapter.get_info())).collect()
 }
 
-async fn found() -> Vec<wgpu::Adapter> {
+async fn all_adapters() -> Vec<wgpu::Adapter> {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let backends = descriptor.backends;
     let instance = wgpu::Instance::new(descriptor);
@@ -48,7 +48,7 @@ fn describe(info: &wgpu::AdapterInfo) -> String {
 /// Opens the adapter that is asked for: the first whose description contains the name, or the fastest.
 pub(crate) async fn open(options: &WgpuOptions) -> Result<(wgpu::Device, wgpu::Queue)> {
     let wanted = options.adapter.as_deref();
-    let adapters = found().await;
+    let adapters = all_adapters().await;
     let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
     let matches = |name: &str| wanted.is_none_or(|wanted| name.to_lowercase().contains(&wanted.to_lowercase()));
     let index = names.iter().position(|name| matches(name)).ok_or_else(|| none(wanted, &names))?;

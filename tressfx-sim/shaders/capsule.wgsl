@@ -52,12 +52,12 @@ struct Turn { point: vec3<f32>, used_share: f32 }
 /// turn is in the plane of parent, centre and `aim`, the direction that it starts from. Parent, centre and vertex are then a
 /// triangle whose three sides are known.
 ///
-/// The turn is limited, and goes on in the next sub-step: where the edge points nearly at the centre, rounding decides on the
-/// plane, and the turn goes with the square root of the depth. `unused_share` is the share of the limit that earlier turns of
-/// this sub-step have not used: between two capsules a vertex is turned back and forth, and each turn enlarges the errors of the one
-/// before. Where the parent is so deep inside that the edge just reaches the surface, or does not reach it, the vertex ends as
-/// straight outwards as `MIN_SINE_AFTER_TURN` allows, or keeps its angle if that is smaller. Where the parent is at the centre, no
-/// direction is outwards.
+/// The turn is limited, and goes on in the next sub-step: where the edge points nearly at the centre, rounding decides on
+/// the plane, and the turn goes with the square root of the depth. `unused_share` is the share of the limit that earlier
+/// turns of this sub-step have not used: between two capsules a vertex is turned back and forth, and each turn enlarges the
+/// errors of the one before. Where the parent is so deep inside that the edge just reaches the surface, or does not reach
+/// it, the vertex ends as straight outwards as `MIN_SINE_AFTER_TURN` allows, or keeps its angle if that is smaller. Where
+/// the parent is at the centre, no direction is outwards.
 ///
 /// The result is a continuous function of the arguments: a vertex that is only just inside is rotated only a little.
 fn turned_out(parent: vec3<f32>, aim: vec3<f32>, length: f32, sphere: vec4<f32>, unused_share: f32) -> Turn {

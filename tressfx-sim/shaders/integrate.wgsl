@@ -50,11 +50,11 @@ fn moved_on(root: Root, here: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
 /// speed of the car. The head's motion counts without the share that the shock has made already.
 fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    let left = (1.0 - step.shock) * (carried(root, before + step.center_displacement) - before);
-    let relative = displacement - left;
+    let remaining = (1.0 - step.shock) * (carried(root, before + step.center_displacement) - before);
+    let relative = displacement - remaining;
     let squared = dot(relative, relative);
     if (squared <= step.max_displacement * step.max_displacement) { return displacement; }
-    return left + relative * (step.max_displacement * inverseSqrt(squared));
+    return remaining + relative * (step.max_displacement * inverseSqrt(squared));
 }
 
 /// A vertex after the pull towards where its root takes the rest pose. The pull is full at the root and nothing at the end of

@@ -1,8 +1,8 @@
 // Length constraints. One thread a guide.
 //
-// All happens in one loop along the strand. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is the same as one
-// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent (dynamic
-// follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
+// All happens in one loop along the strand. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is
+// the same as one sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its
+// parent (dynamic follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
 
 import package::constants::{CHUNK, SWEEPS};
 import package::grid::{GROUP, thread_index};
@@ -20,8 +20,8 @@ import package::vector::{DOWN, NO_LENGTH, direction_or};
 /// placed. Without the correction strands gain energy without end; with a share of 1 they never lose energy.
 const REACTION: f32 = 0.9;
 
-/// The vertices that the sweeps are at, relative to the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest length from
-/// its parent.
+/// The vertices that the sweeps are at, relative to the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest
+/// length from its parent.
 struct Window { vertices: array<vec4<f32>, SWEEPS + 1u>, lengths: array<f32, SWEEPS + 1u> }
 
 /// The last vertex that was placed, relative to the root; where it was before the sub-step, relative to the centre of the groom;

@@ -22,8 +22,8 @@ fn local_shape(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
 /// Vertices that are loaded at once, into registers: with eight there are too many.
 const CHUNK: u32 = 4u;
 
-/// The edge that an iteration is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge adds the
-/// smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
+/// The edge that an iteration is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge
+/// adds the smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
 struct BentEdge { frame: vec4<f32>, here: vec4<f32>, next: vec4<f32> }
 
 /// One iteration: each edge once, from the root to the tip.

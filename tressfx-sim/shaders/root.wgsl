@@ -3,9 +3,9 @@
 import package::step::step;
 import package::vector::{after, rotate, rotate_back};
 
-/// Where a guide's root takes its rest pose: a point of the rest pose, relative to the centre of the groom, is turned and then moved
-/// to a place relative to the centre on the axes of the world. At the end of the sub-step, and one sub-step ago relative to the centre of
-/// then.
+/// Where a guide's root takes its rest pose: a point of the rest pose, relative to the centre of the groom, is turned and
+/// then moved to a place relative to the centre on the axes of the world. At the end of the sub-step, and one sub-step ago
+/// relative to the centre of then.
 @if(roots)
 struct GuideRoot { rotation: vec4<f32>, place: vec4<f32>, last_rotation: vec4<f32>, last_place: vec4<f32> }
 

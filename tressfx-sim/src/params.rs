@@ -25,8 +25,8 @@ pub struct SimParams {
     pub damping: f32,
     /// How stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
     /// allow. It is the share of the distance to its place that an edge moves in 1/60 s; what one sees is the stiffness of a
-    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default
-    /// is so stiff that curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
+    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default is so stiff that
+    /// curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
     ///
     /// [`ClockParams::sub_step`]: crate::ClockParams::sub_step
     pub local_stiffness: f32,

@@ -3,9 +3,9 @@
 //! With `h` the length of the sub-step and `h0` = 1/60 s:
 //!
 //! * damping keeps `exp(-60 D h)` of the velocity;
-//! * a shape constraint that moves a vertex by a share `s` of the distance to its goal in each step is, behind the Verlet integration, a
-//!   spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller, Chentanez 2016).
-//!   It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
+//! * a shape constraint that moves a vertex by a share `s` of the distance to its goal in each step is, behind the Verlet
+//!   integration, a spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller,
+//!   Chentanez 2016). It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
 //! * the shock is a share of the head's motion, not of a time, and stays as it is: in any number of sub-steps the strands
 //!   make the same share of the motion at once. It is made before the integration, so that damping acts on what is left: with
 //!   a shock of 1 on the velocity relative to the head, with 0 on that relative to the air.

@@ -60,7 +60,7 @@ fn state(rig: &mut Rig) -> [Vec<DVec3>; 2] {
 /// Runs one kernel on the GPU's own state, and `reference` on the same.
 fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[(Capsule, CapsuleMotion)])) {
     let (mut rig, step) = moved(t);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let before = state(&mut rig);
     rig.stage(&step, kernel);
     let (found, rest) = ((rig.positions(0), rig.previous(0)), rig.rest(0));

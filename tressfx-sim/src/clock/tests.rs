@@ -42,7 +42,7 @@ fn the_head_moves_evenly_in_the_first_frame_and_arrives() {
 }
 
 #[test]
-fn strands_turn_and_move_with_the_head_about_their_centre() {
+fn strands_turn_and_move_with_the_head_about_their_center() {
     let bounds = Bounds { min: Vec3::new(-0.1, 1.5, -0.1), max: Vec3::new(0.1, 1.7, 0.1) };
     let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
     assert!(clock.center().distance(bounds.center()) < 0.01);

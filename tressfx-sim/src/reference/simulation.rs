@@ -33,8 +33,8 @@ struct Section<'a> {
     step: Step,
     positions: Vec<DVec3>,
     previous: Vec<DVec3>,
-    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where roots ride
-    /// on the head.
+    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where
+    /// roots ride on the head.
     roots: Vec<(RootPlace, RootPlace, GuideRoot)>,
 }
 
