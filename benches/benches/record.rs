@@ -110,7 +110,7 @@ fn vulkan(criterion: &mut Criterion) {
                 backend.record(&mut encoder, &list).expect("a recording");
                 let time = start.elapsed();
                 device.end_command_buffer(commands).expect("an end");
-                backend.discard(before);
+                backend.mark_discarded_after(before);
                 time
             };
             group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {

@@ -20,7 +20,7 @@ pub(crate) fn share(engine: &Gpu) -> VulkanBackend {
     unsafe { VulkanBackend::new(desc) }
 }
 
-/// The engine's images, with the use in which the hair finds them and the use in which it leaves them.
+/// The engine's images, with their initial use, in which the hair finds them, and their final use, in which it leaves them.
 pub(crate) fn import(gpu: &mut VulkanBackend, engine: &Engine, size: [u32; 2]) -> Result<Targets> {
     // As the images were made.
     let uses = TextureUses::TARGET | TextureUses::SAMPLED;

@@ -34,7 +34,7 @@ fn main() -> Result<()> {
         let head = head(f64::from(frame) * DT);
         let commands = engine.begin(&stage.shade(&head))?;
         // SAFETY: the engine has waited for the frame before the last: it is over, and what it used may go.
-        unsafe { gpu.retire(engine.finished()) };
+        unsafe { gpu.mark_finished(engine.finished()) };
         engine.draw_stage(commands);
         // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
         let mut hair_commands = unsafe { EngineCommands::new(&gpu, commands) };

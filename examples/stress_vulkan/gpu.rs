@@ -215,7 +215,7 @@ impl Watch {
         let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
             .message_severity(Severity::WARNING | Severity::ERROR)
             .message_type(Type::GENERAL | Type::VALIDATION | Type::PERFORMANCE)
-            .pfn_user_callback(Some(heard))
+            .pfn_user_callback(Some(on_message))
             .user_data(Arc::as_ptr(&messages).cast_mut().cast());
         // SAFETY: the extension is enabled, and the messages outlive the messenger.
         let messenger = unsafe { debug.create_debug_utils_messenger(&info, None) }?;
@@ -229,7 +229,7 @@ impl Watch {
     }
 }
 
-unsafe extern "system" fn heard(
+unsafe extern "system" fn on_message(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,

@@ -28,7 +28,7 @@ pub(crate) struct Figures {
     pub(crate) two_queues: bool,
     pub(crate) submitted: u64,
     pub(crate) thrown_away: u64,
-    pub(crate) minimised: u64,
+    pub(crate) minimized: u64,
     pub(crate) resizes: u64,
     pub(crate) grooms: u64,
     /// Lists that were recorded after something that they name was destroyed.
@@ -109,7 +109,7 @@ impl Stress {
     fn frame(&mut self, frame: u64) -> Result<()> {
         let mark = self.frames.wait(&self.gpu, frame)?;
         // SAFETY: the engine has waited for the fence of that frame; what was thrown away before was discarded.
-        unsafe { self.backend.retire(mark) };
+        unsafe { self.backend.mark_finished(mark) };
         self.replaced.free(&self.gpu, &self.backend);
         self.figures.allocated[1] = self.figures.allocated[1].max(self.gpu.allocated());
         // The lists of this frame are written, and not recorded yet.
@@ -125,7 +125,7 @@ impl Stress {
         if frame.is_multiple_of(17) && !must_run {
             self.frames.discard(&self.gpu, frame)?;
             // SAFETY: it is not submitted.
-            unsafe { self.backend.discard(before) };
+            unsafe { self.backend.mark_discarded_after(before) };
             self.figures.thrown_away += 1;
         } else {
             self.frames.submit(&self.gpu, frame, self.backend.recorded())?;
@@ -195,7 +195,7 @@ impl Stress {
         let (stage, head) = (&self.stages[self.size], head(frame as f64 * DT));
         let nothing = View::new(Mat4::IDENTITY, Mat4::IDENTITY, stage.view.depth(), [0, 0])?;
         let view = if self.images.is_some() { stage.view } else { nothing };
-        self.figures.minimised += u64::from(view.is_empty());
+        self.figures.minimized += u64::from(view.is_empty());
         let mut lists = Vec::new();
         let mut must_run = false;
         for groom in &mut self.grooms {
@@ -215,7 +215,7 @@ impl Stress {
         self.grooms.drain(..).for_each(|groom| groom.hair.destroy(&mut self.backend));
         self.frames.finish(&self.gpu)?;
         // SAFETY: the engine has waited for all frames.
-        unsafe { self.backend.retire(self.backend.recorded()) };
+        unsafe { self.backend.mark_finished(self.backend.recorded()) };
         self.replaced.free(&self.gpu, &self.backend);
         ensure!(self.replaced.is_empty(), "something still uses images that were replaced");
         self.figures.memory = self.backend.memory().bytes;

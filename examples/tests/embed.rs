@@ -41,7 +41,7 @@ fn engine(stage: &Stage) -> Option<(Engine, VulkanBackend)> {
 fn frame(engine: &mut Engine, gpu: &mut VulkanBackend, hair: &mut Hair, stage: &Stage, head: Pose) {
     let commands = engine.begin(&stage.shade(&head)).unwrap();
     // SAFETY: the engine has waited for the fences of the frames up to this one.
-    unsafe { gpu.retire(engine.finished()) };
+    unsafe { gpu.mark_finished(engine.finished()) };
     engine.draw_stage(commands);
     // SAFETY: it is being recorded, and is submitted below, before the next is recorded.
     let mut hair_commands = unsafe { EngineCommands::new(gpu, commands) };

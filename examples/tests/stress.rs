@@ -21,6 +21,6 @@ fn an_engine_in_bad_weather_never_waits_and_leaves_nothing_behind() {
     println!("{figures:#?}");
     figures.check().unwrap();
     assert!(figures.submitted > 180 && figures.thrown_away > 5, "{figures:?}");
-    assert!(figures.grooms >= 7 && figures.resizes >= 5 && figures.minimised > 10, "{figures:?}");
+    assert!(figures.grooms >= 7 && figures.resizes >= 5 && figures.minimized > 10, "{figures:?}");
     assert!(figures.late_lists > 10, "{figures:?}");
 }

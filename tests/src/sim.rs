@@ -85,7 +85,7 @@ impl Rig {
         }
     }
 
-    /// Positions of all strands of a section about the centre of the groom, strand-major.
+    /// Positions of all strands of a section relative to the centre of the groom, strand-major.
     pub fn positions(&mut self, section: usize) -> Vec<Vec4> {
         let tickets = self.run(|sim, list| sim.read_positions(list));
         self.read(section, tickets[section])
@@ -98,21 +98,21 @@ impl Rig {
         self.positions(section).iter().map(to_world).collect()
     }
 
-    /// Rest pose of the guides of a section about the centre of the groom, strand-major.
+    /// Rest pose of the guides of a section relative to the centre of the groom, strand-major.
     pub fn rest(&self, section: usize) -> Vec<Vec4> {
         relative_to(self.sim.center(), &self.strands[section].rest)
     }
 
-    /// Its capsules as kernels see them: about the centre of the groom, and still as the head sees them.
-    pub fn centred(&self) -> Vec<(Capsule, CapsuleMotion)> {
+    /// Its capsules as kernels see them: relative to the centre of the groom, and still as the head sees them.
+    pub fn centered(&self) -> Vec<(Capsule, CapsuleMotion)> {
         let center = self.sim.center();
-        let about = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
-        self.capsules.iter().map(|capsule| (about(capsule), CapsuleMotion::STILL)).collect()
+        let relative = |capsule: &Capsule| Capsule { a: capsule.a - center, b: capsule.b - center, ..*capsule };
+        self.capsules.iter().map(|capsule| (relative(capsule), CapsuleMotion::STILL)).collect()
     }
 
     /// Runs one kernel of all sections, with these steps for the first section and all capsules.
     pub fn stage(&mut self, step: &Step, stage: Stage) {
-        let capsules = self.centred();
+        let capsules = self.centered();
         let step = step.with_capsules(0, capsules.len() as u32);
         self.run(|sim, list| {
             sim.record_capsules(list, &capsules).expect("as many as it was made for");

@@ -58,7 +58,7 @@ caught! {
     timings_reversed: TimingsReversed in "caps::timings_are_in_order_or_not_there";
     timings_zero: TimingsZero in "caps::timings_are_in_order_or_not_there";
     scopes_forgotten: ScopesForgotten in "caps::timings_are_in_order_or_not_there";
-    cached_by_label: CachedByLabel in "shaders::constants_and_features_specialise";
+    cached_by_label: CachedByLabel in "shaders::constants_and_features_specialize";
     bindings_swapped: BindingsSwapped in "shaders::bindings_have_gaps_and_any_order";
     grid_flat: GridFlat in "shaders::groups_know_their_place_in_the_grid";
     instances_ignored: InstancesIgnored in "shaders::vertices_and_instances_are_counted";
@@ -79,12 +79,12 @@ caught! {
     srgb_linear: SrgbLinear in "formats::rgba8_srgb";
     ten_bits_are_eight: TenBitsAreEight in "formats::rgb10a2";
     integers_clear_to_zero: IntegersClearToZero in "formats::r32_uint_is_cleared_and_drawn";
-    over_replaces: OverReplaces in "state::over_lays_premultiplied_colour_over";
+    over_replaces: OverReplaces in "state::over_lays_premultiplied_color_over";
     sums_are_products: SumsAreProducts in "state::add_adds" "state::multiply_multiplies";
     min_is_max: MinIsMax in "state::min_takes_the_smaller" "state::max_takes_the_larger";
-    targets_swapped: TargetsSwapped in "state::targets_have_their_own_colours";
-    keep_clears: KeepClears in "state::colour_is_kept";
-    clear_keeps: ClearKeeps in "state::colour_is_cleared_before_the_first_draw";
+    targets_swapped: TargetsSwapped in "state::targets_have_their_own_colors";
+    keep_clears: KeepClears in "state::color_is_kept";
+    clear_keeps: ClearKeeps in "state::color_is_cleared_before_the_first_draw";
     depth_swapped: DepthSwapped in "depth::nearer_passes_in_standard_order";
     depth_forgotten: DepthForgotten in "depth::farther_is_hidden_in_standard_order";
     depth_test_writes: DepthTestWrites in "depth::tested_alone_depth_stays";

@@ -68,18 +68,18 @@ fn layout(resource: Resource, kinds: u8) -> u8 {
 impl Memory {
     /// Waits, and changes the layout where the access to come asks for it.
     fn wait(&mut self, wait: &Wait) -> Result<(), String> {
-        let (before, after) = (mask(wait.before), mask(wait.after));
+        let (earlier, later) = (mask(wait.earlier), mask(wait.later));
         let events = self.events.entry(wait.resource).or_default();
         let mut all = true;
         for event in events.iter_mut() {
             // What is waited for, and what came before something that is waited for.
-            let waited = event.kinds != 0 && event.kinds & !before == 0 || event.before & before != 0;
-            event.before |= if waited { after } else { 0 };
+            let waited = event.kinds != 0 && event.kinds & !earlier == 0 || event.before & earlier != 0;
+            event.before |= if waited { later } else { 0 };
             all &= waited;
         }
-        let wanted = layout(wait.resource, after);
+        let wanted = layout(wait.resource, later);
         if self.layouts.insert(wait.resource, wanted).unwrap_or(0) != wanted {
-            events.push(Event { kinds: 0, writes: true, before: after });
+            events.push(Event { kinds: 0, writes: true, before: later });
             return if all { Ok(()) } else { Err(format!("{wait:?} changes the layout under somebody")) };
         }
         Ok(())
@@ -302,7 +302,7 @@ impl World {
     }
 }
 
-/// Walks a list: what was asked for is enough, and each wait is asked for with reason.
+/// Goes through a list: what was asked for is enough, and each wait is asked for with reason.
 fn check(world: &World, steps: &[Step]) -> Result<(), String> {
     let (mut hazards, mut memory) = (Hazards::default(), Memory::default());
     for (place, step) in steps.iter().enumerate() {
@@ -313,7 +313,7 @@ fn check(world: &World, steps: &[Step]) -> Result<(), String> {
             let mut of_resource = waits.iter().filter(|wait| wait.resource == resource);
             if let Some(wait) = of_resource.next() {
                 let without = memory.clone().access(resource, kinds);
-                if without.is_ok() || mask(wait.after) != kinds || of_resource.next().is_some() {
+                if without.is_ok() || mask(wait.later) != kinds || of_resource.next().is_some() {
                     return Err(at(format!("nobody needs {wait:?}")));
                 }
                 memory.wait(wait).map_err(at)?;
@@ -341,7 +341,7 @@ fn the_model_sees_a_wait_that_is_missing() {
     let mut memory = Memory::default();
     memory.access(buffer, COPY_WRITE).unwrap();
     assert!(memory.clone().access(buffer, COMPUTE_READ).is_err(), "nothing was waited for");
-    let wait = Wait { resource: buffer, before: Access::COPY_WRITE, after: Access::COMPUTE_READ };
+    let wait = Wait { resource: buffer, earlier: Access::COPY_WRITE, later: Access::COMPUTE_READ };
     memory.wait(&wait).unwrap();
     memory.access(buffer, COMPUTE_READ).unwrap();
     assert!(memory.clone().access(buffer, RASTER_READ).is_err(), "other stages have not seen it");

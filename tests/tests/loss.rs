@@ -54,5 +54,7 @@ fn of_raw_vulkan() {
         return;
     }
     let options = VulkanOptions { validation: true, ..Default::default() };
-    hold(VulkanBackend::open(&options).unwrap(), |backend| backend.plant_failure(0, vk::Result::ERROR_DEVICE_LOST));
+    hold(VulkanBackend::headless_with(&options).unwrap(), |backend| {
+        backend.plant_failure(0, vk::Result::ERROR_DEVICE_LOST)
+    });
 }

@@ -67,7 +67,7 @@ fn assert_enough([lists, descriptions, sound]: [usize; 3]) {
 
 #[test]
 fn raw_vulkan_under_validation() {
-    let open = || VulkanBackend::open(&VulkanOptions { validation: true, ..Default::default() });
+    let open = || VulkanBackend::headless_with(&VulkanOptions { validation: true, ..Default::default() });
     let (mut backend, mut another) = match (open(), open()) {
         (Ok(backend), Ok(another)) => (backend, another),
         (Err(error), _) | (_, Err(error)) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {

@@ -63,8 +63,8 @@ fn buried(vertices: u32) -> Strands {
 /// A step in which the head moves.
 fn step(info: &SectionInfo, head: Pose) -> Step {
     let sub_step = SubStep {
-        turn: Quat::from_rotation_z(0.002),
-        shift: Vec3::X * 0.0003,
+        head_turn: Quat::from_rotation_z(0.002),
+        center_displacement: Vec3::X * 0.0003,
         ..SubStep::at_rest(1.0 / 120.0, head.rotation)
     };
     Step::new(&limp(), info, &sub_step, None)
@@ -94,7 +94,7 @@ fn collided(rig: &mut Rig, head: Pose) -> ([Pair; 2], usize) {
     rig.stage(&step, Stage::Collide);
     let vertices = rig.strands[0].vertices as usize;
     let rest = rig.rest(0);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let before = positions.clone();
     for guide in 0..GUIDES {
         let range = guide * vertices..(guide + 1) * vertices;
@@ -221,7 +221,7 @@ fn jump_between(one: &State, other: &State, after: impl Fn(&State) -> State) -> 
 
 /// A bounded turn takes several sub-steps, most of them where the strand points exactly at the centre.
 #[test]
-fn strands_that_point_at_a_centre_get_out() {
+fn strands_that_point_at_a_center_get_out() {
     for vertices in VERTICES {
         let Some(mut rig) = rig(aimed(vertices), limp(), &[BALL]) else { return };
         let motion = Motion::still(&rig.strands[0]);

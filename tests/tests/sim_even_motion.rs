@@ -36,7 +36,7 @@ fn inputs(strands: &Strands, speed: f32) -> impl Iterator<Item = StepInput<'stat
     })
 }
 
-/// Tips of the guides about the centre of the groom, m.
+/// Tips of the guides relative to the centre of the groom, m.
 fn tips(strands: &Strands, positions: &[DVec3]) -> Vec<DVec3> {
     let vertices = strands.vertices as usize;
     let guides = positions.chunks(vertices).take(strands.guides as usize);

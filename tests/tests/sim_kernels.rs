@@ -39,8 +39,8 @@ fn step(strands: &Strands) -> Step {
     let rotation = turn * Motion::wild(strands).head(0.2).rotation;
     let sub_step = SubStep {
         time: 0.7,
-        turn,
-        shift: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
+        head_turn: turn,
+        center_displacement: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
         ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
     Step::new(&params(), &SectionInfo::of(strands), &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
@@ -87,9 +87,9 @@ fn check(name: &str, strands: Strands) {
     let (step, motion) = (step(&strands), Motion::wild(&strands));
     let Some(mut rig) = rig(strands, params(), &capsules) else { return };
     rig.play(&motion, 0.2, 60);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let mut touched = false;
-    for &stage in Solver::TressFx.sub_step() {
+    for &stage in Solver::TressFx.stages() {
         let before = state(&mut rig);
         rig.stage(&step, stage);
         let after = (rig.positions(0), rig.previous(0));

@@ -141,7 +141,7 @@ fn sections_of_different_shapes_do_not_disturb_each_other() {
     for (index, (strands, params)) in sections().into_iter().enumerate() {
         let mut alone = rig(strands, params, &[]).unwrap();
         alone.play(&motion, 0.3, 60);
-        // Both have a centre of their own, about which positions are rounded.
+        // Both have a centre of their own, relative to which positions are rounded.
         let pairs = alone.world(0).into_iter().zip(both.world(index));
         let error = pairs.map(|(alone, both)| alone.distance(both)).fold(0.0, f32::max);
         assert!(error < 2e-6, "section {index}: {error:e} m");
@@ -393,7 +393,7 @@ fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl(
         }
         seen.push(shader.label);
     }
-    for stage in Solver::TressFx.sub_step().iter().chain(&Solver::FRAME_END) {
+    for stage in Solver::TressFx.stages().iter().chain(&Solver::FRAME_END) {
         assert!(seen.contains(&stage.label()), "{} runs", stage.label());
     }
     tressfx_core::backend::Run::run(&mut backend, &list).unwrap();

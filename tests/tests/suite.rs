@@ -2,7 +2,7 @@
 
 /// On wgpu.
 mod wgpu {
-    use tressfx_backend_wgpu::WgpuBackend;
+    use tressfx_backend_wgpu::{WgpuBackend, WgpuOptions};
 
     tressfx_conformance::suite!(|| {
         let _alone = tressfx_backend_vulkan::lock_loader();
@@ -11,7 +11,8 @@ mod wgpu {
 
     #[test]
     fn an_adapter_that_is_not_there_is_named() {
-        let missing = WgpuBackend::headless_on(Some("no such adapter")).unwrap_err().to_string();
+        let missing = WgpuOptions { adapter: Some(String::from("no such adapter")) };
+        let missing = WgpuBackend::headless_with(&missing).unwrap_err().to_string();
         let listed = missing.contains("no adapter is named `no such adapter`; there are: ");
         assert!(listed || missing.contains("no graphics adapter was found"), "{missing}");
     }
@@ -21,12 +22,15 @@ mod wgpu {
 mod vulkan {
     use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 
-    tressfx_conformance::suite!(|| VulkanBackend::open(&VulkanOptions { validation: true, ..Default::default() }));
+    tressfx_conformance::suite!(|| VulkanBackend::headless_with(&VulkanOptions {
+        validation: true,
+        ..Default::default()
+    }));
 
     #[test]
     fn an_adapter_that_is_not_there_is_named() {
         let missing = VulkanOptions { adapter: Some(String::from("no such adapter")), ..Default::default() };
-        let missing = VulkanBackend::open(&missing).unwrap_err().to_string();
+        let missing = VulkanBackend::headless_with(&missing).unwrap_err().to_string();
         let listed = missing.contains("no adapter is named `no such adapter`; there are: ");
         assert!(listed || missing.contains("no graphics adapter with Vulkan 1.3 was found"), "{missing}");
     }

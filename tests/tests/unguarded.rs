@@ -16,7 +16,7 @@ use tressfx_core::shader::{Kernel, RasterPipeline};
 struct Unguarded(VulkanBackend);
 
 fn unguarded() -> Result<Unguarded> {
-    VulkanBackend::open(&VulkanOptions { validation: true, ..Default::default() }).map(Unguarded)
+    VulkanBackend::headless_with(&VulkanOptions { validation: true, ..Default::default() }).map(Unguarded)
 }
 
 impl Unguarded {

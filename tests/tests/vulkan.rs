@@ -19,7 +19,7 @@ fn watched() -> VulkanOptions {
 
 /// `None` where there is no adapter and `TRESSFX_NO_GPU` says that this is known.
 fn vulkan(options: &VulkanOptions) -> Option<VulkanBackend> {
-    match VulkanBackend::open(options) {
+    match VulkanBackend::headless_with(options) {
         Ok(backend) => Some(backend),
         Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {
             eprintln!("skipped: {error}");

@@ -30,7 +30,7 @@ const SEGMENTS: u32 = 1 << 0;
 const POINTS: u32 = 1 << 1;
 const THICKNESS: u32 = 1 << 2;
 const TRANSPARENCY: u32 = 1 << 3;
-const COLOUR: u32 = 1 << 4;
+const COLOR: u32 = 1 << 4;
 
 /// Reads a `.hair` file. A strand of 0 segments is one of a single point. Bytes behind the last array are ignored.
 ///
@@ -52,11 +52,11 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let points = arrays.next(POINTS, "points")?.unwrap_or_default();
     let vertex_thickness = arrays.next(THICKNESS, "thickness")?.map(scalars);
     let vertex_transparency = arrays.next(TRANSPARENCY, "transparency")?.map(scalars);
-    let colours: Option<Vec<[f32; 3]>> = arrays.next(COLOUR, "colour")?;
+    let colors: Option<Vec<[f32; 3]>> = arrays.next(COLOR, "colour")?;
     Ok(HairAsset {
         vertex_thickness,
         vertex_transparency,
-        vertex_colours: colours.map(|colours| colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()),
+        vertex_colors: colors.map(|colors| colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()),
         hair_defaults: Some(defaults),
         ..HairAsset::new(name, AssetFormat::Hair, points, counts)
     })
@@ -64,7 +64,7 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
 
 fn array_bits(bytes: Bytes<'_>) -> Result<u32, FileError> {
     let bits = bytes.u32("arrays", 12)?;
-    let known = SEGMENTS | POINTS | THICKNESS | TRANSPARENCY | COLOUR;
+    let known = SEGMENTS | POINTS | THICKNESS | TRANSPARENCY | COLOR;
     if bits & POINTS == 0 || bits & !known != 0 {
         let expected = "bits 0 to 4 only, with bit 1 (points) set";
         return Err(bytes.error("arrays", 12, AssetProblem::out_of_range(format!("{bits:#x}"), expected)));
@@ -79,7 +79,7 @@ fn defaults(bytes: Bytes<'_>) -> Result<HairDefaults, FileError> {
         segments: bytes.u32("default segments", 16)?,
         thickness: bytes.f32("default thickness", 20)?,
         transparency: bytes.f32("default transparency", 24)?,
-        colour: [bytes.f32("default red", 28)?, bytes.f32("default green", 32)?, bytes.f32("default blue", 36)?],
+        color: [bytes.f32("default red", 28)?, bytes.f32("default green", 32)?, bytes.f32("default blue", 36)?],
         info,
     })
 }
@@ -152,7 +152,7 @@ mod tests {
         let asset = read("f", &file()).expect("sound");
         assert_eq!(asset.counts, [2, 3]);
         assert_eq!(asset.points[4], [12.0, 13.0, 14.0]);
-        assert!(asset.vertex_thickness.is_none() && asset.vertex_colours.is_none());
+        assert!(asset.vertex_thickness.is_none() && asset.vertex_colors.is_none());
     }
 
     #[test]

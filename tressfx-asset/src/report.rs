@@ -156,7 +156,7 @@ fn arrays(asset: &HairAsset) -> Vec<&'static str> {
         ("strand thickness", asset.strand_thickness.is_some()),
         ("vertex thickness", asset.vertex_thickness.is_some()),
         ("vertex transparency", asset.vertex_transparency.is_some()),
-        ("vertex colours", asset.vertex_colours.is_some()),
+        ("vertex colours", asset.vertex_colors.is_some()),
         ("guide index", asset.guide_index.is_some()),
     ]
     .into_iter()

@@ -33,7 +33,7 @@ const HEADER: usize = 296;
 const VERTICES: OptionalArray = OptionalArray { field: "verticesOffset", at: 144, header: HEADER };
 const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "strandThicknessOffset", at: 148, header: HEADER };
 const STRAND_UV: OptionalArray = OptionalArray { field: "strandUVOffset", at: 152, header: HEADER };
-const VERTEX_COLOUR: OptionalArray = OptionalArray { field: "vertexColorOffset", at: 156, header: HEADER };
+const VERTEX_COLOR: OptionalArray = OptionalArray { field: "vertexColorOffset", at: 156, header: HEADER };
 const GUIDE_INDEX: OptionalArray = OptionalArray { field: "guideIndexOffset", at: 160, header: HEADER };
 const VERTEX_UV: OptionalArray = OptionalArray { field: "vertexUVOffset", at: 164, header: HEADER };
 
@@ -67,7 +67,7 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
         both_ends_immovable: bytes.u32("bothEndsImmovable", 16)? != 0,
         strand_thickness: STRAND_THICKNESS.floats(bytes, strands, Domain::Strand)?.map(scalars),
         strand_uvs: STRAND_UV.floats(bytes, strands, Domain::Strand)?,
-        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, domain)?,
+        vertex_colors: VERTEX_COLOR.floats(bytes, vertices, domain)?,
         guide_index: guide_index.map(|offset| bytes.u32s(GUIDE_INDEX.field, offset, strands)).transpose()?,
         vertex_uvs: VERTEX_UV.floats(bytes, vertices, domain)?,
         ..HairAsset::new(name, AssetFormat::TressFx3, points, counts)

@@ -31,7 +31,7 @@ const POSITION: OptionalArray = OptionalArray { field: "offsetPosition", at: 12,
 const STRAND_UV: OptionalArray = OptionalArray { field: "offsetStrandUV", at: 16, header: HEADER };
 const VERTEX_UV: OptionalArray = OptionalArray { field: "offsetVertexUV", at: 20, header: HEADER };
 const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "offsetStrandThickness", at: 24, header: HEADER };
-const VERTEX_COLOUR: OptionalArray = OptionalArray { field: "offsetVertexColor", at: 28, header: HEADER };
+const VERTEX_COLOR: OptionalArray = OptionalArray { field: "offsetVertexColor", at: 28, header: HEADER };
 
 /// Reads a 4.x file.
 ///
@@ -62,7 +62,7 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
         strand_uvs: STRAND_UV.floats(bytes, strands, Domain::Strand)?,
         vertex_uvs: VERTEX_UV.floats(bytes, vertices, domain)?,
         strand_thickness: STRAND_THICKNESS.floats(bytes, strands, Domain::Strand)?.map(scalars),
-        vertex_colours: VERTEX_COLOUR.floats(bytes, vertices, domain)?,
+        vertex_colors: VERTEX_COLOR.floats(bytes, vertices, domain)?,
         ..HairAsset::new(name, AssetFormat::TressFx4, points, counts)
     })
 }
@@ -132,7 +132,7 @@ pub fn to_bytes(asset: &HairAsset) -> Result<Vec<u8>, FileError> {
     append(&mut out, asset, &STRAND_UV, asset.strand_uvs.as_deref().map(<[_]>::as_flattened))?;
     append(&mut out, asset, &VERTEX_UV, asset.vertex_uvs.as_deref().map(<[_]>::as_flattened))?;
     append(&mut out, asset, &STRAND_THICKNESS, asset.strand_thickness.as_deref())?;
-    append(&mut out, asset, &VERTEX_COLOUR, asset.vertex_colours.as_deref().map(<[_]>::as_flattened))?;
+    append(&mut out, asset, &VERTEX_COLOR, asset.vertex_colors.as_deref().map(<[_]>::as_flattened))?;
     Ok(out)
 }
 

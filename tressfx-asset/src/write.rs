@@ -58,7 +58,7 @@ pub fn dropped_by(asset: &HairAsset, format: WriteFormat) -> Vec<&'static str> {
         ("strand thickness", asset.strand_thickness.is_some() && text),
         ("vertex thickness", asset.vertex_thickness.is_some()),
         ("vertex transparency", asset.vertex_transparency.is_some()),
-        ("vertex colours", asset.vertex_colours.is_some() && text),
+        ("vertex colours", asset.vertex_colors.is_some() && text),
         ("guide index", asset.guide_index.is_some()),
         ("sorted flag", asset.sorted.is_some() && binary),
         ("vertex count hint", asset.max_vertices.is_some() && binary),

@@ -4,8 +4,8 @@
 //! whose state the CPU can read at any time. So nobody has to tell the backend when a frame begins or how many frames are in
 //! flight. When the event is set, the recording has run, and the bytes of its read-backs are there. But the command buffer
 //! may still be executing, and Vulkan forbids to destroy anything that it names. The engine tells the end of the command
-//! buffer with [`VulkanBackend::retire`], or with [`VulkanBackend::discard`] that it was thrown away. In this module "has
-//! run" means that the event is set, and "is over" that the engine has told the end.
+//! buffer with [`VulkanBackend::mark_finished`], or with [`VulkanBackend::mark_discarded_after`] that it was thrown away. In
+//! this module "has run" means that the event is set, and "is over" that the engine has told the end.
 
 use std::collections::{HashSet, VecDeque};
 
@@ -197,7 +197,7 @@ impl Frames {
     }
 
     /// The newest recording will never run. What was kept for it is now kept for the recording before it.
-    pub(crate) fn take_back(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
+    pub(crate) fn undo(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
         for garbage in std::mem::take(&mut recording.garbage) {
             self.throw_away(gpu, sets, garbage);
         }
@@ -207,7 +207,7 @@ impl Frames {
         self.reuse(gpu, sets, recording);
     }
 
-    /// Makes a recording ready for its next use. It is over, was taken back, or was never added.
+    /// Makes a recording ready for its next use. It is over, was undone, or was never added.
     pub(crate) fn reuse(&mut self, gpu: &Gpu, sets: &mut Sets, mut recording: Recording) {
         recording.zeroed.clear();
         recording.tickets.clear();

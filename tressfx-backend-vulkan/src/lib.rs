@@ -1,6 +1,12 @@
 //! Runs TressFX passes on raw Vulkan 1.3. It uses synchronization2 and dynamic rendering, and naga writes the SPIR-V of the
 //! shaders.
 //!
+//! # Which constructor
+//!
+//! * An engine that has a device and draws hair in its frames: [`VulkanBackend::new`]. The backend shares the device.
+//! * A tool or a test without a device and without a window: [`VulkanBackend::headless`], or
+//!   [`VulkanBackend::headless_with`] to choose the adapter and more. The backend opens a device of its own.
+//!
 //! # Promises
 //!
 //! * [`record`](tressfx_core::backend::Record::record) never submits, waits or keeps the command buffer. Call it outside of
@@ -9,12 +15,13 @@
 //! * Barriers come from `tressfx_core::hazards`: one `vkCmdPipelineBarrier2` before a command that has to wait for an
 //!   earlier one, and no barrier before other commands.
 //! * Imported buffers and textures are never destroyed here; `destroy` only stops tracking them. A recording that uses one
-//!   leaves it in the layout and use that were agreed when it was imported; a recording that does not use it does not touch
+//!   leaves it in the final use (and layout) that it was imported with; a recording that does not use it does not touch
 //!   it.
 //! * On an engine's device only [`run`](tressfx_core::backend::Run::run) waits. A resource that is destroyed while the GPU
 //!   may still use it is freed once the engine has said that the command buffers that may name it have finished: it calls
-//!   [`retire`](VulkanBackend::retire) once a frame.
-//! * If the engine throws a command buffer away, [`discard`](VulkanBackend::discard) takes back what was recorded into it.
+//!   [`mark_finished`](VulkanBackend::mark_finished) once a frame.
+//! * If the engine throws a command buffer away, [`mark_discarded_after`](VulkanBackend::mark_discarded_after) undoes what
+//!   was recorded into it.
 //! * There is no lock inside: one thread at a time may use a backend, and one at a time its queue.
 //!
 //! The crate decides nothing about hair and opens no window.
@@ -80,7 +87,7 @@ pub struct VulkanBackend {
 }
 
 impl VulkanBackend {
-    /// A backend on an engine's device.
+    /// For engines: a backend on the engine's device.
     ///
     /// # Safety
     /// * Instance, adapter, device, queue and allocator belong together and outlive the backend; the device is a Vulkan 1.3
@@ -93,19 +100,19 @@ impl VulkanBackend {
         Self::on(unsafe { device::Gpu::share(desc) }, path)
     }
 
-    /// A backend with a device of its own and no window: the fastest adapter that the system has.
+    /// For tools and tests: a backend with a device of its own and no window, on the fastest adapter that the system has.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] with what was tried and what to install.
     pub fn headless() -> Result<Self> {
-        Self::open(&VulkanOptions::default())
+        Self::headless_with(&VulkanOptions::default())
     }
 
     /// As [`headless`](Self::headless), with options.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`] with the adapters that were found and what to install.
-    pub fn open(options: &VulkanOptions) -> Result<Self> {
+    /// [`Error::NoAdapter`] with the adapters that were found, or with what was tried and what to install.
+    pub fn headless_with(options: &VulkanOptions) -> Result<Self> {
         Ok(Self::on(device::Gpu::open(options)?, options.pipeline_cache.clone()))
     }
 
@@ -154,7 +161,7 @@ impl VulkanBackend {
     }
 
     /// An error if the validation layer has sent messages since the last call.
-    fn heard(&self) -> Result<()> {
+    fn check_validation(&self) -> Result<()> {
         let messages = self.gpu.messages();
         let message = messages.join("\n");
         if messages.is_empty() { Ok(()) } else { Err(Error::Backend { label: "validation", message }) }

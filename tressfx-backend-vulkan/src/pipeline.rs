@@ -67,7 +67,7 @@ impl VulkanBackend {
 
     /// What was made, unless the validation layer had something to say about it.
     fn heard_about(&mut self, label: Label, made: Pipeline) -> Result<Pipeline> {
-        match self.heard() {
+        match self.check_validation() {
             Ok(()) => Ok(made),
             Err(error) => {
                 self.throw_away(Garbage::Pipeline(made));

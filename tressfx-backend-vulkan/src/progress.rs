@@ -9,7 +9,8 @@ use crate::VulkanBackend;
 use crate::frames::{Garbage, Recording};
 
 impl VulkanBackend {
-    /// How many lists were recorded so far: for [`retire`](Self::retire) and [`discard`](Self::discard).
+    /// How many lists were recorded so far: for [`mark_finished`](Self::mark_finished) and
+    /// [`mark_discarded_after`](Self::mark_discarded_after).
     pub fn recorded(&self) -> u64 {
         self.frames.recorded
     }
@@ -18,14 +19,15 @@ impl VulkanBackend {
     ///
     /// An engine that has waited for the fence of a frame says here what [`recorded`](Self::recorded) said when it submitted
     /// it. What those recordings have kept, and what was destroyed since, is freed now and no sooner. Nothing is waited for.
-    /// Recordings that were thrown away and that [`discard`](Self::discard) was not told of are freed with the others.
+    /// Recordings that were thrown away and that [`mark_discarded_after`](Self::mark_discarded_after) was not told of are
+    /// freed with the others.
     ///
     /// # Safety
     /// Each of them has run to its end, or was never submitted and never will be.
-    pub unsafe fn retire(&mut self, recorded: u64) {
+    pub unsafe fn mark_finished(&mut self, recorded: u64) {
         self.time();
         while let Some(newest) = self.frames.take_never_run(&self.gpu, recorded) {
-            self.take_back(newest);
+            self.undo_recording(newest);
         }
         while let Some(mut oldest) = self.frames.take_oldest(recorded) {
             let has_run = oldest.has_run(&self.gpu);
@@ -43,9 +45,9 @@ impl VulkanBackend {
     ///
     /// # Safety
     /// None of them was submitted, and none ever will be.
-    pub unsafe fn discard(&mut self, recorded: u64) {
+    pub unsafe fn mark_discarded_after(&mut self, recorded: u64) {
         while let Some(newest) = self.frames.take_newest(recorded) {
-            self.take_back(newest);
+            self.undo_recording(newest);
         }
         self.sweep();
     }
@@ -57,12 +59,12 @@ impl VulkanBackend {
     }
 
     /// The newest recording never runs: everything is as it was before it.
-    fn take_back(&mut self, mut recording: Recording) {
+    fn undo_recording(&mut self, mut recording: Recording) {
         self.tracker.hazards.undo(std::mem::take(&mut recording.undo));
         recording.forgotten.iter().for_each(|&resource| self.tracker.hazards.forget(resource));
         self.tracker.not_zeroed.append(&mut recording.zeroed);
         self.reads.end(&self.gpu, &recording.tickets, recording.number, false);
-        self.frames.take_back(&self.gpu, &mut self.sets, recording);
+        self.frames.undo(&self.gpu, &mut self.sets, recording);
     }
 
     /// Reads the times of recordings that have run.

@@ -33,8 +33,8 @@ impl EngineCommands {
     ///   recorded, outside of a render pass, and by one thread at a time.
     /// * It is submitted to the backend's queue once: after everything that was recorded before it, before everything that is
     ///   recorded after it, and before the backend [runs](tressfx_core::backend::Run::run) a list by itself. Or it is never
-    ///   submitted, and the backend is told so by [`VulkanBackend::discard`] before it records the next list into another
-    ///   command buffer, or runs one.
+    ///   submitted, and the backend is told so by [`VulkanBackend::mark_discarded_after`] before it records the next list
+    ///   into another command buffer, or runs one.
     pub unsafe fn new(backend: &VulkanBackend, buffer: vk::CommandBuffer) -> Self {
         Self { buffer, device: backend.gpu.device.handle(), family: backend.gpu.queue_family }
     }

@@ -35,12 +35,12 @@ pub(crate) struct Texture {
 pub(crate) enum Ownership {
     /// Ours.
     Us(Allocation),
-    /// An engine's: found in one use at the beginning of each recording, and left in another at its end.
+    /// An engine's. Each recording begins with a barrier from its initial use and ends with one to its final use.
     Engine {
-        /// As it is found.
-        found: EngineUse,
-        /// As it is left.
-        left: EngineUse,
+        /// The engine's use before each recording.
+        initial_use: EngineUse,
+        /// The engine's use after each recording.
+        final_use: EngineUse,
     },
 }
 
@@ -72,7 +72,8 @@ impl Gpu {
 }
 
 impl VulkanBackend {
-    /// Makes an engine's buffer known. It stays the engine's.
+    /// Makes an engine's buffer known. It stays the engine's. Before each recording that uses it the engine has used it as
+    /// `initial_use` says, after it as `final_use` says.
     ///
     /// # Errors
     /// Those of [`BufferDesc::check`].
@@ -84,14 +85,15 @@ impl VulkanBackend {
         &mut self,
         buffer: vk::Buffer,
         desc: &BufferDesc,
-        found: EngineUse,
-        left: EngineUse,
+        initial_use: EngineUse,
+        final_use: EngineUse,
     ) -> Result<BufferId> {
         desc.check(self.catalog.caps())?;
-        Ok(self.catalog.import_buffer(desc, Buffer { buffer, owner: Ownership::Engine { found, left } }))
+        Ok(self.catalog.import_buffer(desc, Buffer { buffer, owner: Ownership::Engine { initial_use, final_use } }))
     }
 
-    /// Makes an engine's texture known: 2D; its first mip level and layer are used. It stays the engine's.
+    /// Makes an engine's texture known: 2D; its first mip level and layer are used. It stays the engine's. Before each
+    /// recording that uses it the engine has used it as `initial_use` says, after it as `final_use` says.
     ///
     /// # Errors
     /// Those of [`TextureDesc::check`], or if no view of it can be made.
@@ -102,12 +104,12 @@ impl VulkanBackend {
         &mut self,
         image: vk::Image,
         desc: &TextureDesc,
-        found: EngineUse,
-        left: EngineUse,
+        initial_use: EngineUse,
+        final_use: EngineUse,
     ) -> Result<TextureId> {
         desc.check(self.catalog.caps())?;
         let view = self.gpu.view_of(desc, image)?;
-        let owner = Ownership::Engine { found, left };
+        let owner = Ownership::Engine { initial_use, final_use };
         let texture = Texture { image, view, size: desc.size, format: desc.format, owner };
         Ok(self.catalog.import_texture(desc, texture))
     }

@@ -84,7 +84,7 @@ impl VulkanBackend {
         let ran = self.run_on(&runner, list);
         self.runner = Some(runner);
         ran?;
-        self.heard()
+        self.check_validation()
     }
 
     fn run_on(&mut self, runner: &Runner, list: &PassList) -> Result<()> {
@@ -96,13 +96,13 @@ impl VulkanBackend {
         if let Err(code) = runner.submit(&self.gpu) {
             let error = self.gpu.failed(code, LABEL, 0);
             // SAFETY: it was not submitted.
-            unsafe { self.discard(before) };
+            unsafe { self.mark_discarded_after(before) };
             return Err(error);
         }
         runner.wait(&self.gpu).map_err(|code| self.gpu.failed(code, LABEL, 0))?;
         // SAFETY: the fence has waited for this and for everything that was submitted before. What was not submitted by now
         // never will be, as promised for all other command buffers.
-        unsafe { self.retire(self.recorded()) };
+        unsafe { self.mark_finished(self.recorded()) };
         Ok(())
     }
 }

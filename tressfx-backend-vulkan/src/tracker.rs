@@ -30,22 +30,22 @@ impl Tracker {
         let first = !self.borrowed.contains(&resource);
         match resource {
             Resource::Buffer(id) => match &resources.buffer(id).owner {
-                Ownership::Engine { found, .. } if first => {
+                Ownership::Engine { initial_use, .. } if first => {
                     self.borrowed.push(resource);
-                    self.barrier.buffer((found.stage, found.access), scope(access, None));
+                    self.barrier.buffer((initial_use.stage, initial_use.access), scope(access, None));
                 }
                 _ => wait.iter().for_each(|wait| {
-                    self.barrier.buffer(scope(wait.before, None), scope(wait.after, None));
+                    self.barrier.buffer(scope(wait.earlier, None), scope(wait.later, None));
                 }),
             },
             Resource::Texture(id) => {
                 let texture = resources.texture(id);
                 match &texture.owner {
-                    Ownership::Engine { found, .. } if first => {
+                    Ownership::Engine { initial_use, .. } if first => {
                         self.borrowed.push(resource);
-                        self.barrier.acquire(texture, found, access);
+                        self.barrier.acquire(texture, initial_use, access);
                     }
-                    _ => wait.iter().for_each(|wait| self.barrier.texture(texture, wait.before, wait.after)),
+                    _ => wait.iter().for_each(|wait| self.barrier.texture(texture, wait.earlier, wait.later)),
                 }
             }
         }
@@ -54,17 +54,17 @@ impl Tracker {
     /// Gives what was borrowed back, in the use that was promised.
     pub(crate) fn give_back(&mut self, gpu: &Gpu, resources: &Resources, commands: vk::CommandBuffer) {
         for resource in std::mem::take(&mut self.borrowed) {
-            let before = self.hazards.release(resource);
+            let earlier = self.hazards.release(resource);
             match resource {
                 Resource::Buffer(id) => {
-                    if let Ownership::Engine { left, .. } = &resources.buffer(id).owner {
-                        self.barrier.buffer(scope(before, None), (left.stage, left.access));
+                    if let Ownership::Engine { final_use, .. } = &resources.buffer(id).owner {
+                        self.barrier.buffer(scope(earlier, None), (final_use.stage, final_use.access));
                     }
                 }
                 Resource::Texture(id) => {
                     let texture = resources.texture(id);
-                    if let Ownership::Engine { left, .. } = &texture.owner {
-                        self.barrier.release(texture, before, left);
+                    if let Ownership::Engine { final_use, .. } = &texture.owner {
+                        self.barrier.release(texture, earlier, final_use);
                     }
                 }
             }

@@ -51,7 +51,7 @@ impl Messages {
                     | vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
                     | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE,
             )
-            .pfn_user_callback(Some(heard))
+            .pfn_user_callback(Some(on_message))
             .user_data(Arc::as_ptr(&texts).cast_mut().cast());
         // SAFETY: the extension is enabled wherever messages are listened to, and `texts` outlives the messenger.
         let messenger = unsafe { debug.create_debug_utils_messenger(&info, None) };
@@ -72,7 +72,7 @@ impl Drop for Messages {
     }
 }
 
-unsafe extern "system" fn heard(
+unsafe extern "system" fn on_message(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,

@@ -8,12 +8,19 @@ use tressfx_core::error::{Error, Result};
 use tressfx_core::pass::Grid;
 use wgpu::{DeviceType, Features, Limits};
 
-/// The adapters of the system, as people name them: `NAME (API, kind, driver)`.
-pub fn adapters() -> Vec<String> {
-    pollster::block_on(found()).iter().map(|adapter| describe(&adapter.get_info())).collect()
+/// How a device of one's own is opened.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WgpuOptions {
+    /// A part of the adapter's name, in whatever case; without it the fastest is taken.
+    pub adapter: Option<String>,
 }
 
-async fn found() -> Vec<wgpu::Adapter> {
+/// The adapters of the system, as people name them: `NAME (API, kind, driver)`.
+pub fn adapters() -> Vec<String> {
+    pollster::block_on(all_adapters()).iter().map(|adapter| describe(&adapter.get_info())).collect()
+}
+
+async fn all_adapters() -> Vec<wgpu::Adapter> {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
     let backends = descriptor.backends;
     let instance = wgpu::Instance::new(descriptor);
@@ -38,9 +45,10 @@ fn describe(info: &wgpu::AdapterInfo) -> String {
     format!("{} ({}, {:?}, {})", info.name, info.backend, info.device_type, driver.trim())
 }
 
-/// Opens the fastest adapter, or the first whose description contains `wanted`.
-pub(crate) async fn open(wanted: Option<&str>) -> Result<(wgpu::Device, wgpu::Queue)> {
-    let adapters = found().await;
+/// Opens the adapter that is asked for: the first whose description contains the name, or the fastest.
+pub(crate) async fn open(options: &WgpuOptions) -> Result<(wgpu::Device, wgpu::Queue)> {
+    let wanted = options.adapter.as_deref();
+    let adapters = all_adapters().await;
     let names: Vec<String> = adapters.iter().map(|adapter| describe(&adapter.get_info())).collect();
     let matches = |name: &str| wanted.is_none_or(|wanted| name.to_lowercase().contains(&wanted.to_lowercase()));
     let index = names.iter().position(|name| matches(name)).ok_or_else(|| none(wanted, &names))?;

@@ -1,5 +1,12 @@
 //! Runs TressFX passes on wgpu.
 //!
+//! # Which constructor
+//!
+//! * An engine that has a device and draws hair in its frames: [`WgpuBackend::new`]. The backend shares the device.
+//! * A tool or a test without a device and without a window: [`WgpuBackend::headless`], or
+//!   [`WgpuBackend::headless_with`] to choose the adapter. The backend opens a device of its own.
+//! * The same where a thread must not block, as in a browser: [`WgpuBackend::headless_async`].
+//!
 //! # Promises
 //!
 //! * [`Record::record`] never submits, waits or keeps the encoder.
@@ -37,7 +44,7 @@ use tressfx_core::id::{BufferId, PipelineId, Resource, TextureId};
 use tressfx_core::pass::Ticket;
 use tressfx_core::shader::{Kernel, RasterPipeline};
 
-pub use device::adapters;
+pub use device::{WgpuOptions, adapters};
 /// The wgpu that this backend is built against.
 pub use wgpu;
 
@@ -56,7 +63,7 @@ pub struct WgpuBackend {
 }
 
 impl WgpuBackend {
-    /// A backend that shares an engine's device and queue.
+    /// For engines: a backend on the engine's device.
     ///
     /// Timestamps are used where the device was made with `TIMESTAMP_QUERY`, targets of
     /// [`R11G11B10F`](tressfx_core::backend::Format::R11G11B10F) where it was made with `RG11B10UFLOAT_RENDERABLE`.
@@ -74,33 +81,33 @@ impl WgpuBackend {
         }
     }
 
-    /// A backend with a device of its own and no window: on the fastest adapter that the system has, or on the first whose
-    /// name contains `adapter`, upper or lower case alike.
+    /// For tools and tests: a backend with a device of its own and no window, on the fastest adapter that the system has.
+    /// Blocks until the device is open.
     ///
     /// # Errors
-    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with what was tried and what to install, or with the names of
-    /// the adapters of this system.
-    pub async fn open(adapter: Option<&str>) -> Result<Self> {
-        let (device, queue) = device::open(adapter).await?;
+    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with what was tried and what to install.
+    pub fn headless() -> Result<Self> {
+        Self::headless_with(&WgpuOptions::default())
+    }
+
+    /// As [`headless`](Self::headless), with options.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`](tressfx_core::Error::NoAdapter) with the adapters that were found, or with what was tried and
+    /// what to install.
+    pub fn headless_with(options: &WgpuOptions) -> Result<Self> {
+        pollster::block_on(Self::headless_async(options))
+    }
+
+    /// As [`headless_with`](Self::headless_with), without blocking.
+    ///
+    /// # Errors
+    /// As [`headless_with`](Self::headless_with).
+    pub async fn headless_async(options: &WgpuOptions) -> Result<Self> {
+        let (device, queue) = device::open(options).await?;
         let backend = Self::new(device, queue);
         backend.loss.watch(&backend.device);
         Ok(backend)
-    }
-
-    /// Blocks until [`open`](Self::open) has opened the fastest adapter. For tools and tests.
-    ///
-    /// # Errors
-    /// As [`open`](Self::open).
-    pub fn headless() -> Result<Self> {
-        Self::headless_on(None)
-    }
-
-    /// Blocks until [`open`](Self::open) is done. For tools and tests.
-    ///
-    /// # Errors
-    /// As [`open`](Self::open).
-    pub fn headless_on(adapter: Option<&str>) -> Result<Self> {
-        pollster::block_on(Self::open(adapter))
     }
 
     /// The device.

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
-use crate::colour;
+use crate::color;
 use crate::filter::Separable;
 
 /// A screen of 3840 pixels as wide as the viewer is far away (0.7 m): about 67.
@@ -16,7 +16,7 @@ pub(crate) const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 /// A picture as it is perceived.
 struct Perceived {
     /// Hunt-adjusted CIELAB without the detail that the eye cannot see.
-    colours: Vec<Vec3>,
+    colors: Vec<Vec3>,
     /// How strong an edge and how strong a point each pixel is on.
     features: Vec<Vec2>,
 }
@@ -25,22 +25,22 @@ struct Perceived {
 pub(crate) fn differences(a: &[[u8; 3]], b: &[[u8; 3]], width: usize) -> Vec<f32> {
     let [a, b] = [a, b].map(|rgb| Perceived::new(rgb, width));
     let remap = Remap::new();
-    let colours = a.colours.iter().zip(&b.colours).map(|(a, b)| remap.apply(colour::hyab(*a, *b)));
+    let colors = a.colors.iter().zip(&b.colors).map(|(a, b)| remap.apply(color::hyab(*a, *b)));
     let features = a.features.iter().zip(&b.features).map(|(a, b)| feature_difference(*a, *b));
-    colours.zip(features).map(|(colour, feature)| colour.powf(1.0 - feature)).collect()
+    colors.zip(features).map(|(color, feature)| color.powf(1.0 - feature)).collect()
 }
 
 impl Perceived {
     fn new(rgb: &[[u8; 3]], width: usize) -> Self {
-        let light = colour::linear_steps();
+        let light = color::linear_steps();
         let linear = |texel: &[u8; 3]| Vec3::from_array(texel.map(|step| light[usize::from(step)]));
-        let opponents: Vec<Vec4> = rgb.iter().map(|texel| colour::opponent(linear(texel))).collect();
+        let opponents: Vec<Vec4> = rgb.iter().map(|texel| color::opponent(linear(texel))).collect();
         let filtered = Separable::contrast_sensitivity(PIXELS_PER_DEGREE).apply(&opponents, width);
-        let colours = filtered.into_iter().map(colour::appearance).collect();
-        let luminance: Vec<Vec4> = opponents.into_iter().map(|texel| Vec4::splat(colour::luminance(texel))).collect();
+        let colors = filtered.into_iter().map(color::appearance).collect();
+        let luminance: Vec<Vec4> = opponents.into_iter().map(|texel| Vec4::splat(color::luminance(texel))).collect();
         let features = Separable::detectors(PIXELS_PER_DEGREE).apply(&luminance, width);
         let features = features.into_iter().map(|found| Vec2::new(found.xy().length(), found.zw().length())).collect();
-        Self { colours, features }
+        Self { colors, features }
     }
 }
 
@@ -58,7 +58,7 @@ impl Remap {
     const KNEE_VALUE: f32 = 0.95;
 
     fn new() -> Self {
-        let largest = colour::hyab(colour::hunt_lab(Vec3::Y), colour::hunt_lab(Vec3::Z));
+        let largest = color::hyab(color::hunt_lab(Vec3::Y), color::hunt_lab(Vec3::Z));
         Self { largest: largest.powf(Self::EXPONENT) }
     }
 

@@ -7,7 +7,7 @@
 
 #![forbid(unsafe_code)]
 
-mod colour;
+mod color;
 mod filter;
 mod flip;
 
@@ -79,7 +79,7 @@ impl Picture {
     }
 
     /// The picture blended over mid-grey, in sRGB-encoded values, as browsers and image viewers blend.
-    fn over_grey(&self) -> Vec<[u8; 3]> {
+    fn over_gray(&self) -> Vec<[u8; 3]> {
         let mix = |&[r, g, b, alpha]: &[u8; 4]| {
             let alpha = u32::from(alpha);
             [r, g, b].map(|channel| ((u32::from(channel) * alpha + 128 * (255 - alpha) + 127) / 255) as u8)
@@ -93,7 +93,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison, Error> {
     if a.size != b.size {
         return Err(Error::Sizes(a.size, b.size));
     }
-    let seen = [a, b].map(Picture::over_grey);
+    let seen = [a, b].map(Picture::over_gray);
     let flip = flip::differences(&seen[0], &seen[1], a.size[0] as usize);
     let pixels = flip.len() as f64;
     Ok(Comparison {
@@ -150,7 +150,7 @@ mod tests {
         let comparison = compare(&even([4, 4], [0, 0, 0, 0]), &even([4, 4], [255, 0, 0, 0])).unwrap();
         assert_eq!((comparison.flip_mean, comparison.psnr_db), (0.0, None));
         assert_eq!((comparison.max_difference, comparison.differing_share), (255, 1.0));
-        let half = even([1, 1], [0, 255, 128, 128]).over_grey();
+        let half = even([1, 1], [0, 255, 128, 128]).over_gray();
         assert_eq!(half, [[64, 192, 128]]);
     }
 

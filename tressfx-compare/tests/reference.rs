@@ -6,17 +6,17 @@ use tressfx_compare::{Picture, compare};
 const SIZE: [u32; 2] = [96, 64];
 
 /// A picture by a formula.
-fn picture(colour: impl Fn(u32, u32) -> [u32; 3]) -> Picture {
+fn picture(color: impl Fn(u32, u32) -> [u32; 3]) -> Picture {
     let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
     let bytes = places.flat_map(|(x, y)| {
-        let [r, g, b] = colour(x, y).map(|channel| channel as u8);
+        let [r, g, b] = color(x, y).map(|channel| channel as u8);
         [r, g, b, 255]
     });
     Picture::new(SIZE, bytes.collect()).unwrap()
 }
 
-fn even(colour: [u32; 3]) -> Picture {
-    picture(|_, _| colour)
+fn even(color: [u32; 3]) -> Picture {
+    picture(|_, _| color)
 }
 
 fn ramp(shift: u32) -> Picture {

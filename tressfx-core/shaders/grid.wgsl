@@ -1,6 +1,6 @@
 // Finding one's place in a grid of threads.
 
-/// Threads of a group of a kernel that walks a row of things.
+/// Threads of a group of a kernel that goes through a row of things.
 const GROUP: u32 = 64u;
 
 /// Index of a thread in a grid made by `Grid::for_threads`: groups are folded into rows where one row does not hold them.

@@ -62,7 +62,7 @@ pub struct HairDefaults {
     /// 0 is opaque, 1 is invisible.
     pub transparency: f32,
     /// RGB.
-    pub colour: [f32; 3],
+    pub color: [f32; 3],
     /// Free text of the author, padded with zeros.
     pub info: [u8; 88],
 }
@@ -99,7 +99,7 @@ pub struct HairAsset {
     /// Transparency per vertex (0 is opaque).
     pub vertex_transparency: Option<Vec<f32>>,
     /// RGBA per vertex.
-    pub vertex_colours: Option<Vec<[f32; 4]>>,
+    pub vertex_colors: Option<Vec<[f32; 4]>>,
     /// TressFX 3: the index of the guide, per strand.
     pub guide_index: Option<Vec<u32>>,
     /// Whether the tips are pinned as well (the last two vertices of a strand).
@@ -134,7 +134,7 @@ impl HairAsset {
             strand_thickness: None,
             vertex_thickness: None,
             vertex_transparency: None,
-            vertex_colours: None,
+            vertex_colors: None,
             guide_index: None,
             both_ends_immovable: false,
             sorted: None,

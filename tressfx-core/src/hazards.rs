@@ -66,9 +66,9 @@ pub struct Wait {
     /// The resource.
     pub resource: Resource,
     /// The earlier accesses to wait for. Empty for a texture without contents, which only needs a layout.
-    pub before: Access,
+    pub earlier: Access,
     /// The access that has to wait.
-    pub after: Access,
+    pub later: Access,
 }
 
 /// The state of one resource.
@@ -79,7 +79,7 @@ struct State {
     /// Reads since that write.
     read: Access,
     /// Kinds of access that have already waited for the write.
-    seen: Access,
+    waited: Access,
     /// The layout of a texture; `None` before its first use, and for buffers.
     layout: Option<Layout>,
 }
@@ -183,17 +183,17 @@ impl Hazards {
         let layout = matches!(resource, Resource::Texture(_)).then(|| Layout::of(access));
         // A change of layout is a write, even if the access only reads. That access has waited for it.
         if access.writes() || state.layout != layout {
-            let before = state.written | state.read;
-            let (read, seen) = if access.writes() { (Access::NONE, Access::NONE) } else { (access, access) };
-            let wait = !before.is_empty() || state.layout != layout;
-            *state = State { written: access, read, seen, layout };
-            return wait.then_some(Wait { resource, before, after: access });
+            let earlier = state.written | state.read;
+            let (read, waited) = if access.writes() { (Access::NONE, Access::NONE) } else { (access, access) };
+            let wait = !earlier.is_empty() || state.layout != layout;
+            *state = State { written: access, read, waited, layout };
+            return wait.then_some(Wait { resource, earlier, later: access });
         }
-        let seen = state.written.is_empty() || state.seen.contains(access);
-        let before = state.written;
+        let waited = state.written.is_empty() || state.waited.contains(access);
+        let earlier = state.written;
         state.read = state.read | access;
-        state.seen = state.seen | access;
-        (!seen).then_some(Wait { resource, before, after: access })
+        state.waited = state.waited | access;
+        (!waited).then_some(Wait { resource, earlier, later: access })
     }
 }
 
@@ -276,8 +276,8 @@ mod tests {
         [slots.insert(()), slots.insert(())].map(|slot| Resource::Buffer(slot.into()))
     }
 
-    fn wait(resource: Resource, before: Access, after: Access) -> Option<Wait> {
-        Some(Wait { resource, before, after })
+    fn wait(resource: Resource, earlier: Access, later: Access) -> Option<Wait> {
+        Some(Wait { resource, earlier, later })
     }
 
     #[test]
@@ -286,7 +286,7 @@ mod tests {
         let mut hazards = Hazards::default();
         assert_eq!(hazards.note_access(a, Access::COMPUTE_WRITE), None);
         assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), wait(a, Access::COMPUTE_WRITE, Access::COMPUTE_READ));
-        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), None, "seen already");
+        assert_eq!(hazards.note_access(a, Access::COMPUTE_READ), None, "it has waited already");
         assert_eq!(hazards.note_access(a, Access::RASTER_READ), wait(a, Access::COMPUTE_WRITE, Access::RASTER_READ));
         assert_eq!(hazards.note_access(a, Access::RASTER_READ), None);
     }

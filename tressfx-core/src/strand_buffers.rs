@@ -45,7 +45,7 @@ impl StrandShape {
         self.strands() * (self.vertices - 1)
     }
 
-    /// The place of a vertex in a buffer that holds all strands: vertex-major, so that threads that walk neighbouring
+    /// The place of a vertex in a buffer that holds all strands: vertex-major, so that threads that go along neighbouring
     /// strands read neighbouring addresses.
     pub fn index(&self, strand: u32, vertex: u32) -> u32 {
         vertex * self.strands() + strand
@@ -64,7 +64,7 @@ pub struct StrandBuffers {
     pub shape: StrandShape,
     /// The point of the rest pose that positions are relative to, see [`Bounds::rounded_center`](crate::strands::Bounds::rounded_center).
     pub center: Vec3,
-    /// `vec4<f32>` a vertex of every strand: position about the centre in the unit of the file, inverse mass.
+    /// `vec4<f32>` a vertex of every strand: position relative to the centre in the unit of the file, inverse mass.
     pub positions: BufferId,
     /// `vec4<f32>` a vertex of every strand: unit tangent towards the tip, 0.
     pub tangents: BufferId,

@@ -45,9 +45,9 @@ fn a_list_runs_in_order_and_waits_only_where_it_must() {
     list.read_buffer(b, 0, 16);
     assert_eq!(list.labels().collect::<Vec<_>>(), ["test.add", "test.add"], "an empty grid is left out");
     let waits: Vec<usize> = hazards::of_list(&list).iter().map(Vec::len).collect();
-    assert_eq!(waits, [0, 0, 2, 1, 1], "the second pass has seen the upload already");
+    assert_eq!(waits, [0, 0, 2, 1, 1], "the second pass has waited for the upload already");
     let update = Access::COMPUTE_READ | Access::COMPUTE_WRITE;
-    assert_eq!(hazards::of_list(&list)[3][0].before, update);
+    assert_eq!(hazards::of_list(&list)[3][0].earlier, update);
     backend.run(&list).unwrap();
     assert_eq!(backend.ran, ["test.add", "test.add"]);
     assert_eq!(backend.barriers, 3);

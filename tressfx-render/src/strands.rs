@@ -99,7 +99,7 @@ pub struct ShadedStrands {
     pub(crate) visibility: BufferId,
     /// `vec2<u32>` a vertex of every strand: four half floats, colour and opacity.
     pub(crate) colors: BufferId,
-    /// A point and a distance from it within which the samples of the rest pose lie, about the centre of the buffers.
+    /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
     owner: Owner,
 }

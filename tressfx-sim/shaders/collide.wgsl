@@ -4,10 +4,10 @@
 // The vertices after it are placed again at their distance from their parent, so that every edge keeps its length. A strand
 // that touches no capsule is not written.
 //
-// Most vertices are far from all capsules. If the nearest capsule is at the distance `clear` from a vertex, the vertices
-// after it need no test for that length of the strand.
+// Most vertices are far from all capsules. If the nearest capsule is at the distance `free_distance` from a vertex, the
+// vertices after it need no test for that length of the strand.
 
-import package::capsule::{GROWTH, GpuCapsule, GpuCapsuleMotion, clearance, nearest, origin_of, relative_to, slid, turned_out};
+import package::capsule::{GpuCapsule, GpuCapsuleMotion, TURN_LIMIT, clearance, nearest, origin_of, relative_to, slid, turned_out};
 import package::grid::{GROUP, thread_index};
 import package::root::{Root, carried_from, root_of};
 import package::step::step;
@@ -23,11 +23,11 @@ import package::vector::{DOWN, direction_or, rotate, rotate_back};
 
 /// The most times that all capsules are tested for a vertex: one that leaves a capsule may enter another.
 const ROUNDS: u32 = 5u;
-/// The limit on rotations is multiplied by this from round to round. Otherwise each round would amplify the rounding errors
+/// The limit on turns is multiplied by this from round to round. Otherwise each round would amplify the rounding errors
 /// of the round before. (A round is one pass over the capsules.)
-const NEXT_ROUND: f32 = 0.25;
+const LIMIT_PER_ROUND: f32 = 0.25;
 /// A round that turns a vertex by less than this share of its edge is the last one.
-const LEAST_TURN: f32 = 1e-5;
+const MIN_TURN: f32 = 1e-5;
 /// A vertex is inside if its squared distance is less than this share of the squared radius. So a vertex on the surface is
 /// outside, in spite of rounding.
 const INSIDE: f32 = 0.999999;
@@ -45,17 +45,26 @@ struct Contact {
     /// The vertex's displacement from its previous position, less what contacts and friction have removed.
     displacement: vec3<f32>,
     /// Distance to the nearest capsule, or less, if none was touched.
-    clear: f32,
+    free_distance: f32,
     /// The direction of the edge that rotations start from if the vertex is deep inside, see `leave`.
     heading: vec3<f32>,
-    /// The share of the limit on rotations that is left.
-    left: f32,
+    /// The share of the limit on turns that is not used yet.
+    unused_share: f32,
 }
 
-/// One pass over the capsules from `first` up to `end`, without `end`. The vertex was inside of `hits` of them, last of
-/// `hit`. The rotations moved it by the length `moved` in all. It was at least `others` away from every capsule that it was
-/// not inside of.
-struct Round { first: u32, end: u32, hits: u32, hit: u32, moved: f32, others: f32 }
+/// One pass over the capsules from `first_capsule` up to `end_capsule`, without `end_capsule`.
+struct Round {
+    first_capsule: u32,
+    end_capsule: u32,
+    /// How many capsules the vertex was inside of.
+    hit_count: u32,
+    /// The last of them.
+    last_hit: u32,
+    /// The length that the turns moved the vertex by in all.
+    moved_distance: f32,
+    /// The vertex was at least this far from every capsule that it was not inside of.
+    min_clearance: f32,
+}
 
 @compute @workgroup_size(GROUP)
 fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -68,14 +77,14 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     var old_parent = root;
     var parent = root;
     var moved = false;
-    var clear = 0.0;
+    var free_distance = 0.0;
     for (var i = 1u; i < step.vertices; i++) {
         let vertex = positions[i * step.strands + strand];
         var point = vertex.xyz;
         moved = moved && vertex.w > 0.0;
         if (moved) { point = parent + edge_length(i, strand) * direction_or(vertex.xyz - parent, DOWN); }
-        clear -= distance(point, parent);
-        if (clear <= 0.0 && vertex.w > 0.0) {
+        free_distance -= distance(point, parent);
+        if (free_distance <= 0.0 && vertex.w > 0.0) {
             let length = edge_length(i, strand);
             let edge = in_head(vertex.xyz - old_parent);
             let contact = resolved(root, in_head(parent - root), in_head(point - root), length, edge, i, strand);
@@ -85,7 +94,7 @@ fn collide(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
                 previous[i * step.guides + strand] = vec4(past, 0.0);
             }
             moved = moved || contact.touched;
-            clear = CERTAIN * contact.clear;
+            free_distance = CERTAIN * contact.free_distance;
         }
         if (moved) { positions[i * step.strands + strand] = vec4(point, vertex.w); }
         old_parent = vertex.xyz;
@@ -108,7 +117,7 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, e
     var contact = Contact(start, false, vec3(0.0), 0.0, direction_or(edge, DOWN), 1.0);
     var round = Round(step.first_capsule, step.end_capsule, 0u, 0u, 0.0, FAR);
     for (var count = 0u; count < ROUNDS; count++) {
-        for (var i = round.first; i < round.end; i++) {
+        for (var i = round.first_capsule; i < round.end_capsule; i++) {
             let capsule = relative_to(origin, capsules[i]);
             let sphere = nearest(capsule, contact.point);
             let from_center = contact.point - sphere.xyz;
@@ -117,18 +126,18 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, e
                     contact.displacement = start - in_head(previous[vertex * step.guides + strand].xyz - root);
                 }
                 let surface = surface_displacement(root, contact.point, i, strand);
-                round.moved += leave(&contact, parent, length, sphere, surface);
-                round.hits += 1u;
-                round.hit = i;
-                if (CERTAIN * round.others <= round.moved) { round.end = step.end_capsule; }
+                round.moved_distance += leave(&contact, parent, length, sphere, surface);
+                round.hit_count += 1u;
+                round.last_hit = i;
+                if (CERTAIN * round.min_clearance <= round.moved_distance) { round.end_capsule = step.end_capsule; }
             } else {
-                round.others = min(round.others, clearance(capsule, contact.point, sphere));
+                round.min_clearance = min(round.min_clearance, clearance(capsule, contact.point, sphere));
             }
         }
-        if (!contact.touched) { contact.clear = round.others; }
-        if (round.moved <= LEAST_TURN * length) { break; }
-        contact.left *= NEXT_ROUND;
-        round = following(round);
+        if (!contact.touched) { contact.free_distance = round.min_clearance; }
+        if (round.moved_distance <= MIN_TURN * length) { break; }
+        contact.unused_share *= LIMIT_PER_ROUND;
+        round = next_round(round);
     }
     return contact;
 }
@@ -136,9 +145,11 @@ fn resolved(root: vec3<f32>, parent: vec3<f32>, start: vec3<f32>, length: f32, e
 /// The round after this one. If the vertex was inside of one capsule only, and the rotations so far cannot have moved it to
 /// another, the next round tests that one capsule only; if the vertex moves too far in it, `resolved` tests the capsules
 /// after it too.
-fn following(round: Round) -> Round {
-    let others = CERTAIN * round.others - round.moved;
-    if (round.hits == 1u && others > 0.0) { return Round(round.hit, round.hit + 1u, 0u, 0u, 0.0, others); }
+fn next_round(round: Round) -> Round {
+    let min_clearance = CERTAIN * round.min_clearance - round.moved_distance;
+    if (round.hit_count == 1u && min_clearance > 0.0) {
+        return Round(round.last_hit, round.last_hit + 1u, 0u, 0u, 0.0, min_clearance);
+    }
     return Round(step.first_capsule, step.end_capsule, 0u, 0u, 0.0, FAR);
 }
 
@@ -152,8 +163,8 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
     let before = direction_or((*contact).point - parent, DOWN);
     let apart = length * distance(before, (*contact).heading);
     let depth = sphere.w - distance((*contact).point, sphere.xyz);
-    let weight = min(GROWTH * depth / max(apart, 1e-12), 1.0);
-    let turn = turned_out(parent, mix(before, (*contact).heading, weight), length, sphere, (*contact).left);
+    let weight = min(TURN_LIMIT * depth / max(apart, 1e-12), 1.0);
+    let turn = turned_out(parent, mix(before, (*contact).heading, weight), length, sphere, (*contact).unused_share);
     let pushed = turn.point - (*contact).point;
     let normal = direction_or(turn.point - sphere.xyz, vec3(0.0));
     let relative = (*contact).displacement + pushed - surface;
@@ -161,7 +172,7 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
     (*contact).point = turn.point;
     (*contact).touched = true;
     (*contact).heading = mix((*contact).heading, direction_or(turn.point - parent, DOWN), weight);
-    (*contact).left *= 1.0 - turn.share;
+    (*contact).unused_share *= 1.0 - turn.used_share;
     return sqrt(dot(pushed, pushed));
 }
 
@@ -170,8 +181,8 @@ fn leave(contact: ptr<function, Contact>, parent: vec3<f32>, length: f32, sphere
 fn surface_displacement(root: vec3<f32>, point: vec3<f32>, capsule: u32, strand: u32) -> vec3<f32> {
     let here = root + in_world(point);
     let own = in_head(here) - origin_of(capsule_motions[capsule], in_head(here));
-    let with_head = here - rotate_back(step.turn, here) + step.shift;
-    let with_root = here - carried_from(root_of(strand), here) + step.shift;
+    let with_head = here - rotate_back(step.head_turn, here) + step.center_displacement;
+    let with_root = here - carried_from(root_of(strand), here) + step.center_displacement;
     return own + in_head(with_head - step.shock * with_root);
 }
 

@@ -38,7 +38,7 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
 /// length constraints need not catch up. Position and past make it alike, and before the integration: the pull towards the
 /// global shape would else count this share a second time. `last` is relative to the centre of the last sub-step.
 fn shocked(root: Root, last: vec3<f32>) -> vec3<f32> {
-    let here = last - step.shift;
+    let here = last - step.center_displacement;
     return here + step.shock * (carried(root, last) - here);
 }
 
@@ -50,11 +50,11 @@ fn moved_on(root: Root, here: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
 /// speed of the car. The head's motion counts without the share that the shock has made already.
 fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    let left = (1.0 - step.shock) * (carried(root, before + step.shift) - before);
-    let relative = displacement - left;
+    let remaining = (1.0 - step.shock) * (carried(root, before + step.center_displacement) - before);
+    let relative = displacement - remaining;
     let squared = dot(relative, relative);
     if (squared <= step.max_displacement * step.max_displacement) { return displacement; }
-    return left + relative * (step.max_displacement * inverseSqrt(squared));
+    return remaining + relative * (step.max_displacement * inverseSqrt(squared));
 }
 
 /// A vertex after the pull towards where its root takes the rest pose. The pull is full at the root and nothing at the end of

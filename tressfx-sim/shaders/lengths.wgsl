@@ -1,8 +1,8 @@
 // Length constraints. One thread a guide.
 //
-// All happens in one walk. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is the same as one
-// sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its parent (dynamic
-// follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
+// All happens in one loop along the strand. Sweep k of the distance constraints runs one vertex behind sweep k - 1, which is
+// the same as one sweep after the other, and behind the last sweep each vertex is placed at its exact rest length from its
+// parent (dynamic follow the leader: Mueller, Kim, Chentanez 2012). So a vertex is loaded and stored once.
 
 import package::constants::{CHUNK, SWEEPS};
 import package::grid::{GROUP, thread_index};
@@ -20,13 +20,19 @@ import package::vector::{DOWN, NO_LENGTH, direction_or};
 /// placed. Without the correction strands gain energy without end; with a share of 1 they never lose energy.
 const REACTION: f32 = 0.9;
 
-/// The vertices that the sweeps are at, relative to the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest length from
-/// its parent.
+/// The vertices that the sweeps are at, relative to the root: vertex `t - k` in `vertices[k]`, and in `lengths[k]` its rest
+/// length from its parent.
 struct Window { vertices: array<vec4<f32>, SWEEPS + 1u>, lengths: array<f32, SWEEPS + 1u> }
 
 /// The last vertex that was placed, relative to the root; where it was before the sub-step, relative to the centre of the groom;
 /// the displacements of it and of the vertex before it; and the direction of its edge.
-struct Placing { parent: vec4<f32>, past: vec3<f32>, way: vec3<f32>, way_before: vec3<f32>, direction: vec3<f32> }
+struct Placing {
+    parent: vec4<f32>,
+    past: vec3<f32>,
+    displacement: vec3<f32>,
+    displacement_before: vec3<f32>,
+    direction: vec3<f32>,
+}
 
 @compute @workgroup_size(GROUP)
 fn lengths(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -98,18 +104,19 @@ fn place(placing: ptr<function, Placing>, swept: vec4<f32>, length: f32, past: v
         let goal = last.parent.xyz + length * (*placing).direction;
         vertex = vec4(select(swept.xyz, goal, swept.w > 0.0), swept.w);
     }
-    let way = vertex.xyz - (past - root);
-    let zigzag = last.way_before - last.way + select(vec3(0.0), way - last.way, vertex.w > 0.0);
+    let displacement = vertex.xyz - (past - root);
+    let zigzag = last.displacement_before - last.displacement
+        + select(vec3(0.0), displacement - last.displacement, vertex.w > 0.0);
     // A pinned vertex has no displacement of its own: its child has one neighbour.
-    (*placing).way_before = select(way, last.way, last.parent.w > 0.0);
-    (*placing).way = way;
+    (*placing).displacement_before = select(displacement, last.displacement, last.parent.w > 0.0);
+    (*placing).displacement = displacement;
     (*placing).past = past;
     (*placing).parent = vertex;
     return last.past + (REACTION * (vertex.xyz - swept.xyz) - step.smoothing * zigzag);
 }
 
-/// What moves the ends of an edge to its rest length, for an inverse mass of 1. Without branches, and with nothing on the way
-/// from positions to result that the masses alone decide: the walk waits for this.
+/// What moves the ends of an edge to its rest length, for an inverse mass of 1. Without branches, and with nothing
+/// between positions and result that depends on the masses alone: the loop along the strand waits for this.
 fn stretch(a: vec4<f32>, b: vec4<f32>, length: f32) -> vec3<f32> {
     let mass = a.w + b.w;
     let share = select(0.0, 1.0 / mass, mass > 0.0);

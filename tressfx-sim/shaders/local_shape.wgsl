@@ -15,18 +15,19 @@ fn local_shape(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     let strand = thread_index(group, groups, lane);
     if (strand >= step.guides) { return; }
     for (var iteration = 0u; iteration < step.local_iterations; iteration++) {
-        walk(strand);
+        constrain(strand);
     }
 }
 
 /// Vertices that are loaded at once, into registers: with eight there are too many.
 const CHUNK: u32 = 4u;
 
-/// The edge that a walk is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge adds the
-/// smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
+/// The edge that an iteration is at: `frame` is what the strand has turned so far. It starts as the root does, and each edge
+/// adds the smallest turn that explains it: so a curl that is turned as a whole is still the same curl.
 struct BentEdge { frame: vec4<f32>, here: vec4<f32>, next: vec4<f32> }
 
-fn walk(strand: u32) {
+/// One iteration: each edge once, from the root to the tip.
+fn constrain(strand: u32) {
     // Positions are relative to the root, see `lengths`.
     let root = positions[strand].xyz;
     let tip = step.vertices - 1u;
@@ -55,7 +56,7 @@ fn walk(strand: u32) {
     positions[tip * step.strands + strand] = from_root(-root, edge.here);
 }
 
-/// An edge that has made its share of the way to its rest pose, and the frame behind it.
+/// An edge that has been moved by its share of the distance to its rest pose, and the frame behind it.
 fn bent(edge: BentEdge, rest_edge: vec3<f32>) -> BentEdge {
     var bent = edge;
     let goal = rotate(edge.frame, rest_edge);
@@ -66,10 +67,10 @@ fn bent(edge: BentEdge, rest_edge: vec3<f32>) -> BentEdge {
     bent.next += vec4(edge.next.w * correction, 0.0);
 
     // An edge without a length turns nothing.
-    let way = bent.next.xyz - bent.here.xyz;
-    let lengths = vec2(dot(goal, goal), dot(way, way));
+    let bent_edge = bent.next.xyz - bent.here.xyz;
+    let lengths = vec2(dot(goal, goal), dot(bent_edge, bent_edge));
     if (min(lengths.x, lengths.y) > NO_LENGTH) {
-        bent.frame = turned(edge.frame, goal * inverseSqrt(lengths.x), way * inverseSqrt(lengths.y));
+        bent.frame = turned(edge.frame, goal * inverseSqrt(lengths.x), bent_edge * inverseSqrt(lengths.y));
     }
     return bent;
 }

@@ -3,9 +3,9 @@
 import package::step::step;
 import package::vector::{after, rotate, rotate_back};
 
-/// Where a guide's root takes its rest pose: a point of the rest pose, about the centre of the groom, is turned and then moved
-/// to a place about the centre on the axes of the world. At the end of the sub-step, and one sub-step ago about the centre of
-/// then.
+/// Where a guide's root takes its rest pose: a point of the rest pose, relative to the centre of the groom, is turned and
+/// then moved to a place relative to the centre on the axes of the world. At the end of the sub-step, and one sub-step ago
+/// relative to the centre of then.
 @if(roots)
 struct GuideRoot { rotation: vec4<f32>, place: vec4<f32>, last_rotation: vec4<f32>, last_place: vec4<f32> }
 
@@ -21,13 +21,13 @@ struct Root {
     turn: vec4<f32>,
     /// Where the centre of the rest pose is taken, at the end of the sub-step.
     @if(roots) place: vec3<f32>,
-    /// The same one sub-step ago, about the centre of then.
+    /// The same one sub-step ago, relative to the centre of then.
     @if(roots) last_place: vec3<f32>,
 }
 
 @if(!roots)
 fn root_of(guide: u32) -> Root {
-    return Root(step.head_rotation, step.turn);
+    return Root(step.head_rotation, step.head_turn);
 }
 
 @if(roots)
@@ -43,13 +43,13 @@ fn shape_of(root: Root, rest: vec3<f32>) -> vec3<f32> {
     @if(roots) { return rotate(root.rotation, rest) + root.place; }
 }
 
-/// Where the root's motion takes a point; `last` is its place one sub-step ago, about the centre of then.
+/// Where the root's motion takes a point; `last` is its place one sub-step ago, relative to the centre of then.
 fn carried(root: Root, last: vec3<f32>) -> vec3<f32> {
     @if(!roots) { return rotate(root.turn, last); }
     @if(roots) { return rotate(root.turn, last - root.last_place) + root.place; }
 }
 
-/// Where a point was one sub-step ago that the root's motion has taken here; about the centre of then.
+/// Where a point was one sub-step ago that the root's motion has taken here; relative to the centre of then.
 fn carried_from(root: Root, here: vec3<f32>) -> vec3<f32> {
     @if(!roots) { return rotate_back(root.turn, here); }
     @if(roots) { return rotate_back(root.turn, here - root.place) + root.last_place; }

@@ -4,7 +4,7 @@ import package::grid::{GROUP, thread_index};
 import package::step::step;
 import package::vector::{after, rotate};
 
-/// A rigid transform within the space of the rest pose: points about the centre of the groom are turned, then moved.
+/// A rigid transform within the space of the rest pose: points relative to the centre of the groom are turned, then moved.
 struct RootTransform { rotation: vec4<f32>, place: vec4<f32> }
 
 /// `GuideRoot` of `package::root`, here to be written.
@@ -33,7 +33,7 @@ fn roots(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     }
 }
 
-/// The transform at a share of the way from one to another.
+/// The transform at a share of the distance from one to another.
 fn root_between(one: RootTransform, other: RootTransform, share: f32) -> RootTransform {
     // Both signs of a quaternion are the same rotation.
     let near = select(-other.rotation, other.rotation, dot(one.rotation, other.rotation) >= 0.0);

@@ -5,10 +5,10 @@ struct Step {
     /// From the axes of the rest pose to those of the world: the rotation of the head at the end of the sub-step.
     head_rotation: vec4<f32>,
     /// The rotation that the head made during the sub-step.
-    turn: vec4<f32>,
+    head_turn: vec4<f32>,
     /// The displacement of the centre of the groom, which moves with the head, during the sub-step. All positions are relative to
     /// that centre.
-    shift: vec3<f32>,
+    center_displacement: vec3<f32>,
     /// Share of the velocity that damping leaves.
     velocity_kept: f32,
     /// Displacement by gravity.

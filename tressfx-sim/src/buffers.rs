@@ -21,7 +21,7 @@ use crate::step::Step;
 pub(crate) struct SectionBuffers {
     /// What the rendering reads too.
     pub(crate) strands: StrandBuffers,
-    /// `vec4<f32>`: rest position about the centre of the groom, inverse mass.
+    /// `vec4<f32>`: rest position relative to the centre of the groom, inverse mass.
     pub(crate) rest: BufferId,
     /// `f32`: rest length of the edge to the next vertex.
     pub(crate) rest_lengths: BufferId,
@@ -60,12 +60,12 @@ pub(crate) struct CapsuleBuffers {
 }
 
 gpu_struct! {
-    /// Where the root of a guide is, within the space of the rest pose: points about the centre of the groom
+    /// Where the root of a guide is, within the space of the rest pose: points relative to the centre of the groom
     /// ([`HairSim::center`](crate::HairSim::center)) are turned, then moved.
     pub struct RootTransform {
         /// A unit quaternion.
         pub rotation: Vec4,
-        /// Where the centre goes, about the centre; `w` is not read.
+        /// Where the centre goes, relative to the centre; `w` is not read.
         pub place: Vec4,
     }
 }

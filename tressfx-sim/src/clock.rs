@@ -101,7 +101,7 @@ impl Clock {
     pub fn pose(&self) -> Pose {
         let head = self.head.unwrap_or(self.simulated_head);
         let translation = carried(self.center, &head).as_vec3();
-        Pose { rotation: turn(self.simulated_head.rotation, head.rotation), translation }
+        Pose { rotation: rotation_between(self.simulated_head.rotation, head.rotation), translation }
     }
 
     /// Divides a frame of `dt` seconds, at whose end the head is at `head`, into sub-steps. Within the frame the head
@@ -134,10 +134,10 @@ impl Clock {
                 length,
                 length_ratio: length / self.last_sub_step,
                 time: self.time,
-                rotation: pose.rotation,
-                turn: turn(self.simulated_head.rotation, pose.rotation),
-                shift: self.displacement(&self.simulated_head, &pose).as_vec3(),
-                acceleration,
+                head_rotation: pose.rotation,
+                head_turn: rotation_between(self.simulated_head.rotation, pose.rotation),
+                center_displacement: self.displacement(&self.simulated_head, &pose).as_vec3(),
+                head_acceleration: acceleration,
                 heads: [self.simulated_head, pose],
                 shares: [share - if simulated > 0.0 { length / simulated } else { 0.0 }, share],
                 share_of_remaining_frame: (length / (simulated - into_frame + length)).min(1.0),
@@ -198,6 +198,6 @@ fn carried(point: Vec3, head: &Pose) -> DVec3 {
 }
 
 /// The rotation that takes `from` to `to`; the identity exactly for a head at rest.
-fn turn(from: Quat, to: Quat) -> Quat {
+fn rotation_between(from: Quat, to: Quat) -> Quat {
     if from == to { Quat::IDENTITY } else { (to * from.inverse()).normalize() }
 }

@@ -66,8 +66,8 @@ impl Collider<'_> {
         Ok(())
     }
 
-    /// The capsule at the end of a sub-step about the centre of the groom, as the head sees it, and its motion during the
-    /// sub-step.
+    /// The capsule at the end of a sub-step and its motion during the sub-step, both in the space of the head, relative to the
+    /// centre of the groom.
     pub(crate) fn at(&self, center: Vec3, sub_step: &SubStep) -> (Capsule, CapsuleMotion) {
         let ColliderMotion::Free { from, to } = &self.motion else {
             let capsule = Capsule { a: self.capsule.a - center, b: self.capsule.b - center, ..self.capsule };
@@ -80,8 +80,9 @@ impl Collider<'_> {
             (to_head * rotation, to_head * (translation - head.translation.as_dvec3()) - center.as_dvec3())
         });
         let place = |point: Vec3| (now.0 * point.as_dvec3() + now.1).as_vec3();
-        let turn = (now.0 * before.0.inverse()).normalize();
-        let motion = CapsuleMotion { turn: turn.as_quat(), shift: (now.1 - turn * before.1).as_vec3() };
+        let rotation = (now.0 * before.0.inverse()).normalize();
+        let motion =
+            CapsuleMotion { rotation: rotation.as_quat(), translation: (now.1 - rotation * before.1).as_vec3() };
         (Capsule { a: place(self.capsule.a), b: place(self.capsule.b), ..self.capsule }, motion)
     }
 }
@@ -95,22 +96,23 @@ fn between(from: &Pose, to: &Pose, share: f64) -> (DQuat, DVec3) {
     (rotation, from.translation.as_dvec3().lerp(to.translation.as_dvec3(), share))
 }
 
-/// The motion of a capsule during a sub-step as the head sees it, about the centre of the groom: turned, then shifted.
+/// The motion of a capsule during a sub-step, in the space of the head, relative to the centre of the groom: its points are
+/// rotated, then moved by the translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CapsuleMotion {
     /// The rotation.
-    pub turn: Quat,
-    /// The shift.
-    pub shift: Vec3,
+    pub rotation: Quat,
+    /// The translation, in the unit of the file.
+    pub translation: Vec3,
 }
 
 impl CapsuleMotion {
     /// That of a capsule that moves with the head.
-    pub const STILL: Self = Self { turn: Quat::IDENTITY, shift: Vec3::ZERO };
+    pub const STILL: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
 }
 
 gpu_struct! {
-    /// A capsule as the kernel reads it: in the space of the rest pose, about the centre of the groom.
+    /// A capsule as the kernel reads it: in the space of the rest pose, relative to the centre of the groom.
     pub(crate) struct GpuCapsule {
         /// Centre of one end.
         pub a: Vec3,
@@ -127,9 +129,9 @@ gpu_struct! {
     /// A [`CapsuleMotion`] as the kernel reads it.
     pub(crate) struct GpuCapsuleMotion {
         /// The rotation.
-        pub turn: glam::Vec4,
-        /// The shift.
-        pub shift: Vec3,
+        pub rotation: glam::Vec4,
+        /// The translation.
+        pub translation: Vec3,
         /// Nothing.
         pub padding: f32,
     }
@@ -153,9 +155,10 @@ impl FromIterator<(Capsule, CapsuleMotion)> for CapsuleList {
 }
 
 impl CapsuleList {
-    fn push(&mut self, Capsule { a, b, radius_a, radius_b }: Capsule, CapsuleMotion { turn, shift }: CapsuleMotion) {
+    fn push(&mut self, Capsule { a, b, radius_a, radius_b }: Capsule, motion: CapsuleMotion) {
+        let CapsuleMotion { rotation, translation } = motion;
         self.capsules.push(GpuCapsule { a, radius_a, b, radius_b });
-        self.motions.push(GpuCapsuleMotion { turn: turn.into(), shift, padding: 0.0 });
+        self.motions.push(GpuCapsuleMotion { rotation: rotation.into(), translation, padding: 0.0 });
     }
 
     pub(crate) fn clear(&mut self) {

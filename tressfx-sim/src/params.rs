@@ -24,17 +24,17 @@ pub struct SimParams {
     /// 0 the still air, through which a moving head then drags its hair; between them a share of both.
     pub damping: f32,
     /// How stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
-    /// allow. It is the share of the way that an edge makes to its place in 1/60 s; what one sees is the stiffness of a
-    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default
-    /// is so stiff that curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
+    /// allow. It is the share of the distance to its place that an edge moves in 1/60 s; what one sees is the stiffness of a
+    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default is so stiff that
+    /// curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
     ///
     /// [`ClockParams::sub_step`]: crate::ClockParams::sub_step
     pub local_stiffness: f32,
     /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness, so that more of them
     /// bring it further along the strand and do not change what it is.
     pub local_iterations: u32,
-    /// How strongly a strand is pulled to where the head carries its rest pose, from 0 to 1: the share of the way in 1/60 s
-    /// at the root.
+    /// How strongly a strand is pulled to where the head carries its rest pose, from 0 to 1: the share of the distance
+    /// that is moved in 1/60 s at the root.
     pub global_stiffness: f32,
     /// The share of the strand, from the root, that the global shape reaches, from 0 to 1. At a share `x` of the range the
     /// pull is `1 - x^2` of that at the root. It does not end at a vertex, as in TressFX, where the strand kinks.

@@ -66,7 +66,7 @@ pub struct StepReport {
 /// It makes buffers and pipelines once; after that it only writes passes into a [`PassList`]. Positions stay in the unit of
 /// the file, and head poses are in that unit too; parameters are SI.
 ///
-/// Positions on the GPU are about the centre of the groom, on the axes of the world: a groom far from the origin loses no
+/// Positions on the GPU are relative to the centre of the groom, on the axes of the world: a groom far from the origin loses no
 /// bits. [`HairSim::pose`] takes them into the world.
 #[derive(Debug)]
 pub struct HairSim {
@@ -208,7 +208,7 @@ impl HairSim {
         self.clock.pose()
     }
 
-    /// The point of the rest pose that positions are about.
+    /// The point of the rest pose that positions are relative to.
     pub fn center(&self) -> Vec3 {
         self.clock.center()
     }
@@ -291,7 +291,7 @@ impl HairSim {
     }
 
     /// Records capsules for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
-    /// themselves. The capsules are about the centre of the groom.
+    /// themselves. The capsules are relative to the centre of the groom.
     ///
     /// # Errors
     /// More capsules than the simulation was made for.
@@ -357,7 +357,7 @@ impl HairSim {
 
     /// `place` is where the steps are, `capsules` are the ranges of capsules of each section.
     fn record_sub_step(&self, list: &mut PassList, place: usize, wind: bool, capsules: &[[u32; 2]]) {
-        let stages = |section: &SimSection| section.solver().sub_step();
+        let stages = |section: &SimSection| section.solver().stages();
         let most = self.sections.iter().map(|section| stages(section).len()).max().unwrap_or(0);
         for index in 0..most {
             for (section, &[first, end]) in self.sections.iter().zip(capsules) {

@@ -21,13 +21,13 @@ pub(crate) struct Conditions {
 }
 
 impl Solver {
-    /// What a reset consists of.
+    /// The stages of a reset.
     pub const RESET: [Stage; 2] = [Stage::Roots, Stage::Integrate];
-    /// What a frame ends with, whatever the solver.
+    /// The stages that a frame ends with, whatever the solver.
     pub const FRAME_END: [Stage; 2] = [Stage::Follow, Stage::Tangents];
 
-    /// What a sub-step consists of, in order.
-    pub fn sub_step(self) -> &'static [Stage] {
+    /// The stages of a sub-step, in order.
+    pub fn stages(self) -> &'static [Stage] {
         match self {
             Self::TressFx => &[
                 Stage::Roots,

@@ -3,9 +3,9 @@
 //! With `h` the length of the sub-step and `h0` = 1/60 s:
 //!
 //! * damping keeps `exp(-60 D h)` of the velocity;
-//! * a shape constraint that moves a vertex by a share `s` of its way in each step is, behind the Verlet integration, a
-//!   spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller, Chentanez 2016).
-//!   It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
+//! * a shape constraint that moves a vertex by a share `s` of the distance to its goal in each step is, behind the Verlet
+//!   integration, a spring that is integrated implicitly, with `k / m = s / (1 - s) / h^2` (as in XPBD: Macklin, Mueller,
+//!   Chentanez 2016). It is the spring that has to stay, so `s / (1 - s)` changes with `(h / h0)^2`;
 //! * the shock is a share of the head's motion, not of a time, and stays as it is: in any number of sub-steps the strands
 //!   make the same share of the motion at once. It is made before the integration, so that damping acts on what is left: with
 //!   a shock of 1 on the velocity relative to the head, with 0 on that relative to the air.
@@ -30,9 +30,10 @@ gpu_struct! {
         /// quaternion.
         pub head_rotation: Vec4,
         /// The rotation that the head made during the sub-step, a unit quaternion.
-        pub turn: Vec4,
-        /// The way that the centre of the groom made with the head during the sub-step. All positions are about that centre.
-        pub shift: Vec3,
+        pub head_turn: Vec4,
+        /// The displacement of the centre of the groom, which moves with the head, during the sub-step. All positions are
+        /// relative to that centre.
+        pub center_displacement: Vec3,
         /// Share of the velocity that damping leaves.
         pub velocity_kept: f32,
         /// Displacement by gravity.
@@ -41,11 +42,11 @@ gpu_struct! {
         pub max_displacement: f32,
         /// Displacement by the wind from the four corners of its cone, across an edge.
         pub wind: [Vec4; 4],
-        /// Share of the way to the global shape at the root.
+        /// Share of the distance to the global shape that a vertex is moved, at the root.
         pub global_stiffness: f32,
         /// Share of the strand, from the root, that the global shape reaches.
         pub global_range: f32,
-        /// Share of the way to the local shape in one iteration, by both vertices of an edge together.
+        /// Share of the distance to the local shape that one iteration moves, by both vertices of an edge together.
         pub local_stiffness: f32,
         /// Coefficient of sliding friction.
         pub friction: f32,
@@ -53,7 +54,7 @@ gpu_struct! {
         pub tip_separation: f32,
         /// Share of the head's motion that the strands make at once.
         pub shock: f32,
-        /// Share by which the way of a vertex is drawn to the mean of its neighbours'.
+        /// Share by which the displacement of a vertex is moved towards the mean of its neighbours' displacements.
         pub smoothing: f32,
         /// Not 0: the strands go to their rest pose, at rest.
         pub reset: u32,
@@ -67,7 +68,7 @@ gpu_struct! {
         pub follows: u32,
         /// Iterations of the local shape constraints.
         pub local_iterations: u32,
-        /// Share of the way to where the roots are at the end of the frame that they make in this sub-step.
+        /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
         pub root_share: f32,
         /// The first capsule that the section collides with.
         pub first_capsule: u32,
@@ -132,11 +133,11 @@ impl Step {
         let blow = |corner: Vec3| (corner.as_dvec3() * drag).clamp_length_max(max_displacement).as_vec3().extend(0.0);
         let iterations = f64::from(params.local_iterations);
         let local = spring_share(params.local_stiffness, sub.length);
-        let shocked = sub.acceleration * info.metres_per_unit > params.shock_acceleration;
+        let shocked = sub.head_acceleration * info.metres_per_unit > params.shock_acceleration;
         Self {
-            head_rotation: sub.rotation.into(),
-            turn: sub.turn.into(),
-            shift: sub.shift,
+            head_rotation: sub.head_rotation.into(),
+            head_turn: sub.head_turn.into(),
+            center_displacement: sub.center_displacement,
             velocity_kept: ((-60.0 * f64::from(params.damping) * sub.length).exp() * sub.length_ratio) as f32,
             gravity: (params.gravity.as_dvec3() * (square / metres)).as_vec3(),
             max_displacement: max_displacement as f32,
@@ -147,7 +148,7 @@ impl Step {
                 0.0
             },
             global_range: params.global_range,
-            // The iterations share the stiffness: n of them, one after the other, make as much of the way as one would.
+            // The iterations share the stiffness: n of them, one after the other, move a vertex as far as one would.
             local_stiffness: -((-local).ln_1p() / iterations).exp_m1() as f32,
             friction: params.friction,
             tip_separation: params.tip_separation.unwrap_or(info.tip_separation),

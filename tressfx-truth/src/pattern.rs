@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbouring_pixels_have_other_points() {
+    fn neighboring_pixels_have_other_points() {
         let firsts: Vec<DVec2> = (0..64).map(|i| shift([i % 8, i / 8])).collect();
         let mean = firsts.iter().sum::<DVec2>() / 64.0;
         assert!((mean - 0.5).abs().max_element() < 0.1, "{mean}");

@@ -35,8 +35,8 @@ fn without_strands_there_is_nothing() {
 #[test]
 fn a_view_without_a_pixel_and_one_of_a_single_pixel() {
     let whole = perspective([8, 8]);
-    let minimised = View::new(whole.view_matrix(), whole.projection_matrix(), whole.depth(), [0, 8]).unwrap();
-    assert!(render(&minimised, &[&wide()], 4).pixels().is_empty());
+    let minimized = View::new(whole.view_matrix(), whole.projection_matrix(), whole.depth(), [0, 8]).unwrap();
+    assert!(render(&minimized, &[&wide()], 4).pixels().is_empty());
     let hair = Hair::new(1.5, &[(&LINE, RED)]);
     let picture = render(&perspective([1, 1]), &[&hair], 4);
     assert_near(pixel(&picture, 0, 0), premultiplied(RED));

@@ -207,7 +207,7 @@ fn depth_of_the_scene_in_an_orthographic_view() {
 }
 
 #[test]
-fn colour_and_opacity_change_evenly_along_a_segment() {
+fn color_and_opacity_change_evenly_along_a_segment() {
     let mut hair = Hair::new(0.3, &[(&across(0.0, 0.0), RED)]);
     hair.colors = vec![[0.0, 1.0, 0.0, 0.25], [1.5, 1.0, 0.0, 1.0]];
     let truth = Truth::new(&orthographic([64, 64]), &[hair.section()], None).unwrap();

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
-use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_backend_wgpu::{WgpuBackend, WgpuOptions};
 use tressfx_core::backend::Run;
 
 use crate::cli::{BackendName, Scene};
@@ -11,8 +11,8 @@ use crate::cli::{BackendName, Scene};
 pub(crate) fn open(args: &Scene) -> Result<Box<dyn Run>> {
     match args.backend {
         BackendName::Wgpu if args.validate => bail!("--validate works with --backend vulkan"),
-        BackendName::Wgpu => Ok(Box::new(WgpuBackend::headless_on(args.adapter.as_deref())?)),
-        BackendName::Vulkan => Ok(Box::new(VulkanBackend::open(&VulkanOptions {
+        BackendName::Wgpu => Ok(Box::new(WgpuBackend::headless_with(&WgpuOptions { adapter: args.adapter.clone() })?)),
+        BackendName::Vulkan => Ok(Box::new(VulkanBackend::headless_with(&VulkanOptions {
             adapter: args.adapter.clone(),
             validation: args.validate,
             statistics: args.profile || args.trace.is_some(),

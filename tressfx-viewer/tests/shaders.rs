@@ -171,7 +171,10 @@ fn one_kernel_is_chosen_by_its_name() {
     assert_eq!(lengths["workgroup_size"], serde_json::json!([64, 1, 1]));
     assert_eq!(lengths["bindings"][0]["places"]["hlsl"], "register(b0)");
     let step = lengths["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
-    assert_eq!(step["fields"][2], serde_json::json!({ "name": "shift", "type": "vec3<f32>", "offset": 32 }));
+    assert_eq!(
+        step["fields"][2],
+        serde_json::json!({ "name": "center_displacement", "type": "vec3<f32>", "offset": 32 })
+    );
     let output = tressfx(&folder, &["--kernel", "hair.sim.lenghts", "--out", "none"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));

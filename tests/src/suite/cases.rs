@@ -79,7 +79,7 @@ macro_rules! each_case {
                 caps_fit_the_library: [];
             }
             shaders {
-                constants_and_features_specialise: [Compute ReadBack];
+                constants_and_features_specialize: [Compute ReadBack];
                 bindings_have_gaps_and_any_order: [Compute ReadBack];
                 one_kernel_has_many_bindings: [Compute ReadBack];
                 uniform_and_storage_read_the_same: [Compute ReadBack];
@@ -163,7 +163,7 @@ macro_rules! each_case {
             }
             state {
                 replace_replaces_alpha_and_all: [Raster ReadBack];
-                over_lays_premultiplied_colour_over: [Raster ReadBack];
+                over_lays_premultiplied_color_over: [Raster ReadBack];
                 over_blends_floats: [Raster ReadBack];
                 over_blends_srgb_as_light: [Raster ReadBack];
                 over_takes_more_light_than_alpha: [Raster ReadBack];
@@ -175,10 +175,10 @@ macro_rules! each_case {
                 draws_of_a_pass_are_in_order: [Raster ReadBack];
                 both_faces_are_drawn: [Raster ReadBack];
                 counter_clockwise_is_the_front: [Raster ReadBack];
-                colour_is_kept: [Raster ReadBack];
-                colour_is_kept_across_lists: [Raster ReadBack];
-                colour_is_cleared_before_the_first_draw: [Raster ReadBack];
-                targets_have_their_own_colours: [Raster ReadBack];
+                color_is_kept: [Raster ReadBack];
+                color_is_kept_across_lists: [Raster ReadBack];
+                color_is_cleared_before_the_first_draw: [Raster ReadBack];
+                targets_have_their_own_colors: [Raster ReadBack];
                 targets_begin_each_in_its_own_way: [Raster ReadBack];
                 no_vertices_and_no_instances_draw_nothing: [Raster ReadBack];
             }

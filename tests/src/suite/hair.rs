@@ -35,14 +35,14 @@ fn step(strands: &Strands) -> Step {
     let rotation = turn * Motion::wild(strands).head(0.1).rotation;
     let sub_step = SubStep {
         time: 0.7,
-        turn,
-        shift: Vec3::new(0.0003, -0.0004, 0.0005),
+        head_turn: turn,
+        center_displacement: Vec3::new(0.0003, -0.0004, 0.0005),
         ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
     Step::new(&params(), &SectionInfo::of(strands), &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
 }
 
-/// Random strands that have moved for a while, a step for them, and capsules about their centre.
+/// Random strands that have moved for a while, a step for them, and capsules relative to their centre.
 fn moved(t: &Subject) -> (Rig, Step) {
     let strands = random_strands(24, 12, 1, 9);
     let (step, capsules, motion) = (step(&strands), capsules(&strands), Motion::wild(&strands));
@@ -60,7 +60,7 @@ fn state(rig: &mut Rig) -> [Vec<DVec3>; 2] {
 /// Runs one kernel on the GPU's own state, and `reference` on the same.
 fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[(Capsule, CapsuleMotion)])) {
     let (mut rig, step) = moved(t);
-    let capsules = rig.centred();
+    let capsules = rig.centered();
     let before = state(&mut rig);
     rig.stage(&step, kernel);
     let (found, rest) = ((rig.positions(0), rig.previous(0)), rig.rest(0));

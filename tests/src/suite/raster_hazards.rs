@@ -236,8 +236,8 @@ fn slope(t: &mut Subject, kernel: &RasterPipeline, depth: TextureId) {
 }
 
 fn sloped() -> Vec<f32> {
-    let centre = |i: u32| (i as f32 + 0.5) / EDGE as f32;
-    (0..EDGE).flat_map(|y| (0..EDGE).map(move |x| 0.5 * centre(x) + 0.25 * (1.0 - centre(y)))).collect()
+    let center = |i: u32| (i as f32 + 0.5) / EDGE as f32;
+    (0..EDGE).flat_map(|y| (0..EDGE).map(move |x| 0.5 * center(x) + 0.25 * (1.0 - center(y)))).collect()
 }
 
 fn assert_near(found: &[u32], expected: &[f32]) {

@@ -7,7 +7,7 @@ use tressfx_core::shader::{ShaderSource, Specialization};
 use super::kernels::LOAD;
 use super::subject::{Subject, draw, noise, source};
 
-pub(super) fn constants_and_features_specialise(t: &mut Subject) {
+pub(super) fn constants_and_features_specialize(t: &mut Subject) {
     const SPECIAL: ShaderSource = source(
         "suite.special",
         "import package::constants::FACTOR;
@@ -20,7 +20,7 @@ pub(super) fn constants_and_features_specialise(t: &mut Subject) {
     );
     let kernels = [(2, false), (5, false), (2, true), (5, true)].map(|(factor, add)| {
         let specialization = Specialization::new().constant("FACTOR", factor).feature("add", add);
-        t.specialised(&SPECIAL, &specialization)
+        t.specialized(&SPECIAL, &specialization)
     });
     let values = kernels.each_ref().map(|_| t.storage(&[1u32, 2, 3, 4]));
     for (kernel, values) in kernels.iter().zip(values) {

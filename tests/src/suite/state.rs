@@ -44,7 +44,7 @@ pub(super) fn replace_replaces_alpha_and_all(t: &mut Subject) {
     assert_eq!(found, above);
 }
 
-pub(super) fn over_lays_premultiplied_colour_over(t: &mut Subject) {
+pub(super) fn over_lays_premultiplied_color_over(t: &mut Subject) {
     let [below, above, found] = layers(t, Blend::Over);
     for i in 0..COUNT {
         let (below, above, found) = (channels(below[i]), channels(above[i]), channels(found[i]));
@@ -170,7 +170,7 @@ pub(super) fn counter_clockwise_is_the_front(t: &mut Subject) {
     assert_eq!(t.texels(target), [255; 16]);
 }
 
-pub(super) fn colour_is_kept(t: &mut Subject) {
+pub(super) fn color_is_kept(t: &mut Subject) {
     let (fill_all, paint) = (
         t.raster(&FILL, &[(Format::Rgba8, Blend::Replace)], Depth::Off),
         t.raster(&FILL, &[(Format::Rgba8, Blend::Over)], Depth::Off),
@@ -183,7 +183,7 @@ pub(super) fn colour_is_kept(t: &mut Subject) {
     assert_eq!(t.texels(target), [51, 255, 51, 255].repeat(6));
 }
 
-pub(super) fn colour_is_kept_across_lists(t: &mut Subject) {
+pub(super) fn color_is_kept_across_lists(t: &mut Subject) {
     let target = t.texture([3, 2], Format::Rgba8);
     t.draw(target, Load::Clear([1.0, 0.0, 1.0, 0.0]), Vec::new());
     t.run();
@@ -191,7 +191,7 @@ pub(super) fn colour_is_kept_across_lists(t: &mut Subject) {
     assert_eq!(t.texels(target), [255, 0, 255, 0].repeat(6));
 }
 
-pub(super) fn colour_is_cleared_before_the_first_draw(t: &mut Subject) {
+pub(super) fn color_is_cleared_before_the_first_draw(t: &mut Subject) {
     let over = t.raster(&FILL, &[(Format::Rgba8, Blend::Over)], Depth::Off);
     let target = t.texture([3, 2], Format::Rgba8);
     t.draw(target, Load::Clear([1.0; 4]), Vec::new());
@@ -200,7 +200,7 @@ pub(super) fn colour_is_cleared_before_the_first_draw(t: &mut Subject) {
     assert_eq!(t.texels(target), [51, 102, 0, 255].repeat(6));
 }
 
-pub(super) fn targets_have_their_own_colours(t: &mut Subject) {
+pub(super) fn targets_have_their_own_colors(t: &mut Subject) {
     const THREE: ShaderSource = source(
         "suite.three",
         "import package::cover::cover;

@@ -79,11 +79,11 @@ impl<'a> Subject<'a> {
 
     /// A compute kernel that is not specialised.
     pub(super) fn compute(&mut self, source: &ShaderSource) -> Kernel {
-        self.specialised(source, &Specialization::new())
+        self.specialized(source, &Specialization::new())
     }
 
     /// A compute kernel.
-    pub(super) fn specialised(&mut self, source: &ShaderSource, specialization: &Specialization) -> Kernel {
+    pub(super) fn specialized(&mut self, source: &ShaderSource, specialization: &Specialization) -> Kernel {
         let shader = Arc::new(Shader::new(source, specialization).expect("the suite's shaders are fine"));
         self.backend.create_compute(&ComputeDesc::new(shader)).expect("a compute kernel")
     }

@@ -246,13 +246,13 @@ fn listen(
     let info = vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(Severity::WARNING | Severity::ERROR)
         .message_type(Kind::GENERAL | Kind::VALIDATION | Kind::PERFORMANCE)
-        .pfn_user_callback(Some(heard))
+        .pfn_user_callback(Some(on_message))
         .user_data(Arc::as_ptr(messages).cast_mut().cast());
     // SAFETY: the messages outlive the messenger.
     unsafe { debug.create_debug_utils_messenger(&info, None) }.map_err(|error| error.to_string())
 }
 
-unsafe extern "system" fn heard(
+unsafe extern "system" fn on_message(
     _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     _kind: vk::DebugUtilsMessageTypeFlagsEXT,
     data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,

@@ -66,7 +66,7 @@ fn an_engine_that_only_retires_what_it_threw_away_goes_on() {
         game.hair.record(&mut encoder, &thrown).unwrap();
         game.engine.discard(encoder.raw());
         // SAFETY: it was never submitted.
-        unsafe { game.hair.retire(game.hair.recorded()) };
+        unsafe { game.hair.mark_finished(game.hair.recorded()) };
         assert_eq!(game.hair.read(failed), ReadBack::Failed);
     }
     // The buffer is still to be filled with zeros, and the texture has no layout yet.

@@ -104,9 +104,9 @@ fn said(promised: &Use, used: &Use) -> Option<Vec<String>> {
     let desc = TextureDesc::new("engine", TEXTURE_SIZE, used.format);
     let mut encoder = game.begin();
     let commands = encoder.raw();
-    for found in [FRESH, used.import] {
+    for initial_use in [FRESH, used.import] {
         // SAFETY: the image is as it is described, and lives as long as the engine.
-        let texture = unsafe { game.hair.import_texture(image.0, &desc, found, promised.import) }.unwrap();
+        let texture = unsafe { game.hair.import_texture(image.0, &desc, initial_use, promised.import) }.unwrap();
         game.hair.record(&mut encoder, &drawing(texture, used.format)).unwrap();
         let buffer = game.engine.buffer(&[0; 16]);
         (used.command)(&game.engine.device, commands, image, buffer);
@@ -160,14 +160,14 @@ fn a_texture_that_comes_back_too_early_is_noticed() {
 
 #[test]
 fn a_buffer_that_is_not_in_the_promised_use_is_noticed() {
-    for (found, left, fine) in
+    for (initial_use, final_use, fine) in
         [(COPIED, COPIED, true), (EngineUse::COMPUTE, COPIED, false), (COPIED, EngineUse::COMPUTE, false)]
     {
         let Some(mut game) = game() else { return };
         let buffer = game.engine.buffer(&[0; 16]);
         let desc = BufferDesc::storage("engine", 16);
         // SAFETY: it has 16 bytes and lives as long as the engine.
-        let id = unsafe { game.hair.import_buffer(buffer, &desc, found, left) }.unwrap();
+        let id = unsafe { game.hair.import_buffer(buffer, &desc, initial_use, final_use) }.unwrap();
         game.buffers.insert(id, buffer);
         let mut list = PassList::new();
         list.upload(id, 0, &[1u32; 4]);
@@ -178,7 +178,7 @@ fn a_buffer_that_is_not_in_the_promised_use_is_noticed() {
         game.engine.submit(commands.raw());
         game.engine.wait();
         let said = game.engine.said();
-        assert_eq!(said.is_empty(), fine, "{found:?}, {left:?}: {said:?}");
+        assert_eq!(said.is_empty(), fine, "{initial_use:?}, {final_use:?}: {said:?}");
         assert!(said.iter().all(|said| said.contains("SYNC-HAZARD-WRITE-AFTER-WRITE")), "{said:?}");
     }
 }

@@ -150,13 +150,13 @@ impl Embed for Game {
     fn wait(&mut self) {
         self.engine.wait();
         // SAFETY: the queue has finished with everything that was submitted, and all else was discarded.
-        unsafe { self.hair.retire(self.hair.recorded()) };
+        unsafe { self.hair.mark_finished(self.hair.recorded()) };
         self.engine.assert_silent();
     }
 
     fn discard(&mut self, encoder: Box<EngineCommands>) {
         self.engine.discard(encoder.raw());
         // SAFETY: it was never submitted.
-        unsafe { self.hair.discard(self.begun) };
+        unsafe { self.hair.mark_discarded_after(self.begun) };
     }
 }

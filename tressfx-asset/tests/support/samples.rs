@@ -38,9 +38,9 @@ pub(crate) fn tressfx4(strands: u32, vertices: u32) -> Vec<u8> {
     let uv = header + 16 * total;
     let vertex_uv = uv + 8 * strands;
     let thickness = vertex_uv + 8 * total;
-    let colour = thickness + 4 * strands;
+    let color = thickness + 4 * strands;
     let mut file = 4.0f32.to_le_bytes().to_vec();
-    push_u32(&mut file, &[strands, vertices, header, uv, vertex_uv, thickness, colour]);
+    push_u32(&mut file, &[strands, vertices, header, uv, vertex_uv, thickness, color]);
     file.resize(header as usize, 0);
     for vertex in 0..total {
         let w = if vertex % vertices < 2 { 0.0 } else { 1.0 };
@@ -55,13 +55,13 @@ fn tressfx3(strands: u32, vertices: u32) -> Vec<u8> {
     let (header, total) = (296, strands * vertices);
     let thickness = header + 12 * total;
     let uv = thickness + 4 * strands;
-    let colour = uv + 8 * strands;
-    let guide_index = colour + 16 * total;
+    let color = uv + 8 * strands;
+    let guide_index = color + 16 * total;
     let vertex_uv = guide_index + 4 * strands;
     let mut file = 3.0f32.to_le_bytes().to_vec();
     push_u32(&mut file, &[strands, vertices, 4, 1]);
     file.resize(144, 0);
-    push_u32(&mut file, &[header, thickness, uv, colour, guide_index, vertex_uv]);
+    push_u32(&mut file, &[header, thickness, uv, color, guide_index, vertex_uv]);
     file.resize(header as usize, 0);
     push_ramp(&mut file, 3 * total + strands + 2 * strands + 4 * total);
     (0..strands).for_each(|strand| push_u32(&mut file, &[strand]));

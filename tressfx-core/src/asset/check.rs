@@ -85,7 +85,7 @@ impl HairAsset {
             ("vertex UVs", flat(&self.vertex_uvs), 2, vertex),
             ("vertex thickness", self.vertex_thickness.as_deref(), 1, vertex),
             ("vertex transparency", self.vertex_transparency.as_deref(), 1, vertex),
-            ("vertex colours", flat(&self.vertex_colours), 4, vertex),
+            ("vertex colours", flat(&self.vertex_colors), 4, vertex),
         ]
     }
 

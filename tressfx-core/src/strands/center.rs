@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_lost_relative_to_the_centre() {
+    fn nothing_is_lost_relative_to_the_center() {
         let point = |i: u32| {
             let x = i as f32;
             Vec4::new(1.6 + 0.1 * (1.3 * x).sin(), 0.12 * (0.7 * x).cos(), -0.07 + 0.09 * (2.1 * x).sin(), 1.0)
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn a_groom_without_an_extent_has_a_centre() {
+    fn a_groom_without_an_extent_has_a_center() {
         let point = Vec3::new(1.0, 2.0, 3.0);
         assert_eq!(Bounds { min: point, max: point }.rounded_center(), point);
         assert!(Bounds::default().rounded_center().is_finite());

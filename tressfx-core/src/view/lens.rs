@@ -279,7 +279,7 @@ mod tests {
         let mut nowhere = projection;
         nowhere.z_axis.z = 1.0;
         assert!(matches!(refused(view, nowhere, standard), ViewError::Near(_)));
-        let minimised = View::new(view * f32::NAN, projection * f32::NAN, standard, [0, 200]).unwrap();
-        assert!(minimised.is_empty());
+        let minimized = View::new(view * f32::NAN, projection * f32::NAN, standard, [0, 200]).unwrap();
+        assert!(minimized.is_empty());
     }
 }

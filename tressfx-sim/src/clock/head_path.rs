@@ -13,20 +13,24 @@ use tressfx_core::view::Pose;
 pub(crate) struct HeadPath {
     from: Pose,
     to: Pose,
-    translation: Cubic,
+    /// Relative to that of `from`.
+    translation: NewtonPolynomial,
     /// Of the rotation vector from `from`.
-    rotation: Cubic,
+    rotation: NewtonPolynomial,
 }
 
-/// Newton's polynomial through four points: `t * (way + (t - 1) * (bend + (t + length) * twist))`. At `t` = 0 it is 0. The
-/// three vectors are its divided differences.
+/// The cubic polynomial through four points, in Newton's form: `t * (first + (t - 1) * (second + (t + last_length) * third))`.
+/// At `t` = 0 it is 0.
 #[derive(Clone, Copy, Debug)]
-struct Cubic {
-    way: DVec3,
-    bend: DVec3,
-    twist: DVec3,
-    /// The third point is at `t = -length`.
-    length: f64,
+struct NewtonPolynomial {
+    /// The first divided difference.
+    first: DVec3,
+    /// The second one; 0 for a straight line.
+    second: DVec3,
+    /// The third one; 0 for a parabola.
+    third: DVec3,
+    /// The length of the last frame: the third point is at `t = -last_length`.
+    last_length: f64,
 }
 
 /// From this share of the frame on the pose is that of its end.
@@ -42,14 +46,14 @@ pub(crate) struct EarlierFrame {
 impl HeadPath {
     /// The path from `from` to `to`. `before` are the last frame and the one before it.
     pub(crate) fn new(before: [Option<EarlierFrame>; 2], from: Pose, to: Pose) -> Self {
-        let cubic = |of: &dyn Fn(&Pose) -> DVec3| {
-            Cubic::new(before.map(|before| before.map(|before| (of(&before.head), before.length))), of(&to))
+        let polynomial = |of: &dyn Fn(&Pose) -> DVec3| {
+            NewtonPolynomial::new(before.map(|before| before.map(|before| (of(&before.head), before.length))), of(&to))
         };
         Self {
             from,
             to,
-            translation: cubic(&|pose| pose.translation.as_dvec3() - from.translation.as_dvec3()),
-            rotation: cubic(&|pose| rotation_vector(&from, pose)),
+            translation: polynomial(&|pose| pose.translation.as_dvec3() - from.translation.as_dvec3()),
+            rotation: polynomial(&|pose| rotation_vector(&from, pose)),
         }
     }
 
@@ -67,21 +71,21 @@ impl HeadPath {
     }
 }
 
-impl Cubic {
-    /// Through 0 at `t` = 0, through `way` at 1, and through the points of `before`: the first is its length before 0, the
+impl NewtonPolynomial {
+    /// Through 0 at `t` = 0, through `end` at 1, and through the points of `before`: the first is its length before 0, the
     /// second its length before the first.
-    fn new(before: [Option<(DVec3, f64)>; 2], way: DVec3) -> Self {
-        let bent = |point: DVec3, time: f64| (point + time * way) / (time * (time + 1.0));
-        let [Some((last, length)), earlier] = before else {
-            return Self { way, bend: DVec3::ZERO, twist: DVec3::ZERO, length: 0.0 };
+    fn new(before: [Option<(DVec3, f64)>; 2], end: DVec3) -> Self {
+        let second_difference = |point: DVec3, time: f64| (point + time * end) / (time * (time + 1.0));
+        let [Some((last, last_length)), earlier] = before else {
+            return Self { first: end, second: DVec3::ZERO, third: DVec3::ZERO, last_length: 0.0 };
         };
-        let bend = bent(last, length);
-        let twist = earlier.map(|(point, more)| (bend - bent(point, length + more)) / more);
-        Self { way, bend, twist: twist.unwrap_or(DVec3::ZERO), length }
+        let second = second_difference(last, last_length);
+        let third = earlier.map(|(point, length)| (second - second_difference(point, last_length + length)) / length);
+        Self { first: end, second, third: third.unwrap_or(DVec3::ZERO), last_length }
     }
 
     fn at(&self, t: f64) -> DVec3 {
-        t * (self.way + (t - 1.0) * (self.bend + (t + self.length) * self.twist))
+        t * (self.first + (t - 1.0) * (self.second + (t + self.last_length) * self.third))
     }
 }
 

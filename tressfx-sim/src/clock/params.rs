@@ -8,16 +8,15 @@ use crate::params::{ParamError, within};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClockParams {
-    /// Length of a sub-step, s. At 1/120 the local shape constraints are stiff and hair still comes to rest. They move the
-    /// two vertices of an edge but not the edge before it, which can add energy; integration with a sub-step that is not too
-    /// short removes it again. With 1/240, curls of medium stiffness tremble.
+    /// Seconds: the length of a sub-step. At 1/120 the local shape constraints are stiff and hair still comes to rest. They
+    /// move the two vertices of an edge but not the edge before it, which can add energy; integration with a sub-step that
+    /// is not too short removes it again. With 1/240, curls of medium stiffness tremble.
     pub sub_step: f64,
-    /// The most time that one frame simulates, s; the rest is dropped, and reported.
+    /// Seconds: the most time that one frame simulates; the rest is dropped, and reported.
     pub max_frame: f64,
-    /// A head that moves further than this in one frame has teleported; in radii of the groom.
+    /// Radii of the groom: a head that moves further than this in one frame has teleported.
     pub teleport_distance: f32,
-    /// A head that turns further than this in one frame has teleported; in radians. With pi or more a turn is never a
-    /// teleport.
+    /// Radians: a head that turns further than this in one frame has teleported. With pi or more a turn is never a teleport.
     pub teleport_angle: f32,
 }
 

@@ -13,13 +13,13 @@ pub struct SubStep {
     /// Simulated time at its end, s.
     pub time: f64,
     /// The rotation of the head at its end.
-    pub rotation: Quat,
+    pub head_rotation: Quat,
     /// The rotation that the head makes during it; exactly the identity if the head does not turn.
-    pub turn: Quat,
+    pub head_turn: Quat,
     /// The displacement of the groom's centre during it, in units of the file; exactly 0 if the head does not move.
-    pub shift: Vec3,
+    pub center_displacement: Vec3,
     /// The acceleration of the head in this frame, the largest within the groom's bounds, units of the file / s^2.
-    pub acceleration: f32,
+    pub head_acceleration: f32,
     /// The head at its beginning and at its end.
     pub heads: [Pose; 2],
     /// Its beginning and its end, as shares of the simulated part of the frame. The first sub-step may begin before the
@@ -37,10 +37,10 @@ impl SubStep {
             length,
             length_ratio: 1.0,
             time: 0.0,
-            rotation,
-            turn: Quat::IDENTITY,
-            shift: Vec3::ZERO,
-            acceleration: 0.0,
+            head_rotation: rotation,
+            head_turn: Quat::IDENTITY,
+            center_displacement: Vec3::ZERO,
+            head_acceleration: 0.0,
             heads: [head; 2],
             shares: [0.0, 1.0],
             share_of_remaining_frame: 1.0,

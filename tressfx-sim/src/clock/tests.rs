@@ -30,19 +30,19 @@ fn two_seconds_are_as_many_sub_steps_at_any_frame_rate() {
 fn the_head_moves_evenly_in_the_first_frame_and_arrives() {
     let mut clock = clock();
     let frame = clock.advance(1.0 / 60.0, moved(0.2));
-    let shifts: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.shift.x).collect();
-    assert!(shifts.iter().all(|shift| (shift - 0.1).abs() < 1e-6), "{shifts:?}");
+    let displacements: Vec<f32> = frame.sub_steps.iter().map(|sub_step| sub_step.center_displacement.x).collect();
+    assert!(displacements.iter().all(|displacement| (displacement - 0.1).abs() < 1e-6), "{displacements:?}");
     assert_eq!(clock.pose(), moved(0.2), "the end of the frame is met exactly");
     // Half of a sub-step: the strands stay, and the renderer is told where they are to be.
     let frame = clock.advance(1.0 / 240.0, moved(0.25));
     assert!(frame.sub_steps.is_empty());
     assert_eq!(clock.pose(), moved(0.25));
     let frame = clock.advance(1.0 / 240.0, moved(0.35));
-    assert!((frame.sub_steps[0].shift.x - 0.15).abs() < 1e-6);
+    assert!((frame.sub_steps[0].center_displacement.x - 0.15).abs() < 1e-6);
 }
 
 #[test]
-fn strands_turn_and_move_with_the_head_about_their_centre() {
+fn strands_turn_and_move_with_the_head_about_their_center() {
     let bounds = Bounds { min: Vec3::new(-0.1, 1.5, -0.1), max: Vec3::new(0.1, 1.7, 0.1) };
     let mut clock = Clock::new(ClockParams::default(), bounds).unwrap();
     assert!(clock.center().distance(bounds.center()) < 0.01);
@@ -54,8 +54,8 @@ fn strands_turn_and_move_with_the_head_about_their_centre() {
     for frame in 1..=30 {
         let head = head(0.02 * frame as f32);
         for sub_step in clock.advance(1.0 / 60.0, head).sub_steps {
-            place = sub_step.turn.as_dquat() * place;
-            center += sub_step.shift.as_dvec3();
+            place = sub_step.head_turn.as_dquat() * place;
+            center += sub_step.center_displacement.as_dvec3();
         }
         let carried = head.transform(point);
         assert!((center + place).as_vec3().distance(carried) < 2e-6, "the head carries it to {carried}");
@@ -77,7 +77,7 @@ fn places(clock: &mut Clock, dt: f64, ends: &[f32]) -> Vec<f32> {
             place = end;
         }
         for sub_step in frame.sub_steps {
-            place += sub_step.shift.x;
+            place += sub_step.center_displacement.x;
             places.push(place);
         }
     }
@@ -109,11 +109,12 @@ fn a_shorter_sub_step_finds_the_head_where_it_was() {
     clock.set_params(ClockParams { sub_step: 1.0 / 1000.0, ..ClockParams::default() }).unwrap();
     for (dt, x) in [(0.0, 0.2), (1e-12, 0.3)] {
         let plan = clock.advance(dt, moved(x));
-        let finite =
-            |sub_step: &SubStep| sub_step.shift.is_finite() && sub_step.shares.iter().all(|share| share.is_finite());
+        let finite = |sub_step: &SubStep| {
+            sub_step.center_displacement.is_finite() && sub_step.shares.iter().all(|share| share.is_finite())
+        };
         assert!(plan.sub_steps.iter().all(finite), "{plan:?}");
-        let way: f32 = plan.sub_steps.iter().map(|sub_step| sub_step.shift.x).sum();
-        assert!((-1e-6..0.2).contains(&way), "{way}");
+        let sum: f32 = plan.sub_steps.iter().map(|sub_step| sub_step.center_displacement.x).sum();
+        assert!((-1e-6..0.2).contains(&sum), "{sum}");
     }
 }
 
@@ -123,8 +124,13 @@ fn a_head_at_rest_makes_no_motion_at_all() {
     let head = Pose { rotation: Quat::from_rotation_x(0.3), translation: Vec3::new(0.1, 0.2, 0.3) };
     clock.advance(0.1, head);
     let frame = clock.advance(0.1, head);
-    assert!(frame.sub_steps.iter().all(|sub_step| sub_step.turn == Quat::IDENTITY && sub_step.shift == Vec3::ZERO));
-    assert!(frame.sub_steps.iter().all(|sub_step| sub_step.rotation == head.rotation));
+    assert!(
+        frame
+            .sub_steps
+            .iter()
+            .all(|sub_step| sub_step.head_turn == Quat::IDENTITY && sub_step.center_displacement == Vec3::ZERO)
+    );
+    assert!(frame.sub_steps.iter().all(|sub_step| sub_step.head_rotation == head.rotation));
 }
 
 #[test]
@@ -132,7 +138,7 @@ fn the_acceleration_is_that_of_the_frames() {
     let mut clock = clock();
     let dt = 1.0 / 60.0;
     let at = |frame: f32| moved(0.5 * 12.0 * (frame / 60.0).powi(2));
-    let accelerations = (1..10).map(|frame| clock.advance(dt, at(frame as f32)).sub_steps[0].acceleration);
+    let accelerations = (1..10).map(|frame| clock.advance(dt, at(frame as f32)).sub_steps[0].head_acceleration);
     let accelerations: Vec<f32> = accelerations.collect();
     assert_eq!(accelerations[0], 0.0, "one frame knows no acceleration");
     assert!(accelerations[1..].iter().all(|acceleration| (acceleration - 12.0).abs() < 0.1), "{accelerations:?}");

@@ -15,7 +15,7 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 /// Vertices that are loaded at once, at most: more do not stay in registers.
 const LARGEST_CHUNK: u32 = 5;
 
-/// How many vertices are loaded at once, so that a walk of so many steps ends with little or nothing of its last chunk left.
+/// How many vertices are loaded at once, so that a loop of so many steps ends with little or nothing of its last chunk left.
 fn chunk(steps: u32) -> u32 {
     steps.div_ceil(steps.div_ceil(LARGEST_CHUNK))
 }

@@ -33,17 +33,18 @@ pub fn integrate(step: &Step, guide: &mut Guide) {
 
 /// A point that has made its share of the root's motion.
 fn shocked(step: &Step, root: &RootMotion, last: DVec3) -> DVec3 {
-    let here = last - step.shift.as_dvec3();
+    let here = last - step.center_displacement.as_dvec3();
     here + f64::from(step.shock) * (root.carried(last) - here)
 }
 
 /// The displacement, no longer than allowed relative to the head, whose motion counts without the share of the shock.
 fn bounded(step: &Step, root: &RootMotion, displacement: DVec3, before: DVec3) -> DVec3 {
-    let left = (1.0 - f64::from(step.shock)) * (root.carried(before + step.shift.as_dvec3()) - before);
-    let relative = displacement - left;
+    let remaining =
+        (1.0 - f64::from(step.shock)) * (root.carried(before + step.center_displacement.as_dvec3()) - before);
+    let relative = displacement - remaining;
     let longest = f64::from(step.max_displacement);
     if relative.length_squared() <= longest * longest {
         return displacement;
     }
-    left + relative.normalize_or_zero() * longest
+    remaining + relative.normalize_or_zero() * longest
 }

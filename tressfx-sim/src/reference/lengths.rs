@@ -8,7 +8,7 @@ use crate::step::Step;
 
 const REACTION: f64 = 0.9;
 
-/// So many sweeps of the distance constraints, then exact lengths from the root to the tip, which velocities answer for.
+/// So many sweeps of the distance constraints, then exact lengths from the root to the tip, for which velocities are corrected.
 pub fn lengths(step: &Step, guide: &mut Guide, sweeps: u32) {
     for _ in 0..sweeps {
         sweep(guide);
@@ -16,7 +16,7 @@ pub fn lengths(step: &Step, guide: &mut Guide, sweeps: u32) {
     let last = guide.vertices() - 1;
     let swept = guide.positions.to_vec();
     pull(guide, (0..=last).collect());
-    answer(guide, &swept, step.smoothing.into());
+    correct_velocities(guide, &swept, step.smoothing.into());
     if guide.is_pinned(last) {
         for _ in 0..4 {
             pull(guide, (0..=last).rev().collect());
@@ -39,14 +39,14 @@ fn sweep(guide: &mut Guide) {
     }
 }
 
-/// Velocities answer for the placing of the vertices, and are drawn to the mean of their neighbours'.
-fn answer(guide: &mut Guide, swept: &[DVec3], smoothing: f64) {
+/// Corrects velocities for the placing of the vertices, and moves displacements towards the mean of their neighbours'.
+fn correct_velocities(guide: &mut Guide, swept: &[DVec3], smoothing: f64) {
     let vertices = guide.vertices();
-    let ways: Vec<DVec3> = (0..vertices).map(|i| guide.positions[i] - guide.previous[i]).collect();
+    let displacements: Vec<DVec3> = (0..vertices).map(|i| guide.positions[i] - guide.previous[i]).collect();
     let free: Vec<bool> = (0..vertices).map(|i| !guide.is_pinned(i)).collect();
     for i in (0..vertices - 1).filter(|&i| free[i]) {
-        let neighbours = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter(|&j| free[j]);
-        let zigzag: DVec3 = neighbours.map(|j| ways[j] - ways[i]).sum();
+        let neighbors = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter(|&j| free[j]);
+        let zigzag: DVec3 = neighbors.map(|j| displacements[j] - displacements[i]).sum();
         guide.previous[i] += REACTION * (guide.positions[i + 1] - swept[i + 1]) - smoothing * zigzag;
     }
 }

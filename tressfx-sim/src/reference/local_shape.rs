@@ -7,11 +7,12 @@ use crate::step::Step;
 /// Each edge is pulled towards the angle to the edge before it that it has in the rest pose; the first one to its root's.
 pub fn local_shape(step: &Step, guide: &mut Guide, iterations: u32) {
     for _ in 0..iterations {
-        walk(step, guide);
+        constrain(step, guide);
     }
 }
 
-fn walk(step: &Step, guide: &mut Guide) {
+/// One iteration: each edge once, from the root to the tip.
+fn constrain(step: &Step, guide: &mut Guide) {
     let mut frame = guide.root(step).rotation;
     for i in 0..guide.vertices() - 1 {
         let goal = rotate(frame, position(guide.rest[i + 1]) - position(guide.rest[i]));

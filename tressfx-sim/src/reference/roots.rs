@@ -6,7 +6,7 @@ use super::vector::{rotate, rotate_back};
 use crate::buffers::RootTransform;
 use crate::step::Step;
 
-/// Where a root is within the space of the rest pose, about the centre of the groom.
+/// Where a root is within the space of the rest pose, relative to the centre of the groom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootPlace {
     /// Points are turned,
@@ -18,9 +18,9 @@ pub struct RootPlace {
 /// A root with the head: now and one sub-step ago.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideRoot {
-    /// At the end of the sub-step, about the centre, on the axes of the world.
+    /// At the end of the sub-step, relative to the centre, on the axes of the world.
     pub now: RootPlace,
-    /// One sub-step ago, about the centre of then.
+    /// One sub-step ago, relative to the centre of then.
     pub last: RootPlace,
 }
 
@@ -34,7 +34,7 @@ impl RootPlace {
     /// A root that rides on the head.
     pub const WITH_HEAD: Self = Self { rotation: DQuat::IDENTITY, place: DVec3::ZERO };
 
-    /// At a share of the way to another.
+    /// The transform at a share of the distance to another.
     fn towards(&self, other: &Self, share: f64) -> Self {
         let near = if self.rotation.dot(other.rotation) < 0.0 { -other.rotation } else { other.rotation };
         let rotation = DVec4::from(self.rotation).lerp(near.into(), share).normalize();
@@ -63,7 +63,7 @@ pub(super) struct RootMotion {
 impl RootMotion {
     /// That of the head where the root has none of its own.
     pub(super) fn new(step: &Step, root: Option<&GuideRoot>) -> Self {
-        let (rotation, turn) = (step.head_rotation.as_dvec4(), step.turn.as_dvec4());
+        let (rotation, turn) = (step.head_rotation.as_dvec4(), step.head_turn.as_dvec4());
         let with_head = Self { rotation, turn, place: DVec3::ZERO, last_place: DVec3::ZERO };
         root.map_or(with_head, |GuideRoot { now, last }| Self {
             rotation: now.rotation.into(),
@@ -78,7 +78,7 @@ impl RootMotion {
         rotate(self.rotation, rest) + self.place
     }
 
-    /// Where the root's motion takes a point about the centre of the last sub-step.
+    /// Where the root's motion takes a point relative to the centre of the last sub-step.
     pub(super) fn carried(&self, last: DVec3) -> DVec3 {
         rotate(self.turn, last - self.last_place) + self.place
     }

@@ -26,15 +26,15 @@ pub struct Simulation<'a> {
 #[derive(Debug)]
 struct Section<'a> {
     strands: &'a Strands,
-    /// About the centre of the groom.
+    /// Relative to the centre of the groom.
     rest: Vec<Vec4>,
     params: SimParams,
     info: SectionInfo,
     step: Step,
     positions: Vec<DVec3>,
     previous: Vec<DVec3>,
-    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where roots ride
-    /// on the head.
+    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where
+    /// roots ride on the head.
     roots: Vec<(RootPlace, RootPlace, GuideRoot)>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    /// Positions of all strands of a section about the centre of the groom, strand-major.
+    /// Positions of all strands of a section relative to the centre of the groom, strand-major.
     ///
     /// # Panics
     /// If there is no such section.

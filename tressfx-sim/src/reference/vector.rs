@@ -50,7 +50,7 @@ impl Step {
 
     /// Where the head's motion during the sub-step took a point from.
     pub(super) fn carried_from(&self, point: DVec3) -> DVec3 {
-        rotate_back(self.turn.as_dvec4(), point) - self.shift.as_dvec3()
+        rotate_back(self.head_turn.as_dvec4(), point) - self.center_displacement.as_dvec3()
     }
 }
 

@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unfiltered_colour_keeps_its_appearance() {
+    fn an_unfiltered_color_keeps_its_appearance() {
         let half = vec4(1.0, 1.0, 0.5, 0.5);
         for linear in [Vec3::ZERO, Vec3::ONE, vec3(0.2, 0.7, 0.1), vec3(1.0, 0.0, 0.5)] {
             assert!(appearance(half * opponent(linear)).abs_diff_eq(hunt_lab(linear), 2e-3), "{linear}");
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn known_colours_have_known_coordinates() {
+    fn known_colors_have_known_coordinates() {
         let steps = linear_steps();
         assert_eq!((steps[0], steps[255]), (0.0, 1.0));
         assert!((steps[188] - 0.503).abs() < 1e-3);
