@@ -10,7 +10,7 @@ use tressfx_compare::{Comparison, Picture, compare};
 use tressfx_conformance::show::{Scene, Show};
 use tressfx_conformance::sim::{REAL, real};
 use tressfx_core::backend::{Backend, Run};
-use tressfx_render::{Fill, Material, PpllDesc, ShortCutDesc, Technique};
+use tressfx_render::{Fill, Material, PpllDesc, ShortCutDesc, Technique, TilesDesc};
 use tressfx_sim::SimParams;
 
 use support::gpu;
@@ -105,7 +105,7 @@ fn built_in_grooms_are_the_same_on_both_backends() {
 #[test]
 fn every_technique_is_the_same_on_both_backends() {
     let shortcut = ShortCutDesc::default();
-    let techniques: [(&str, Technique); 7] = [
+    let techniques: [(&str, Technique); 9] = [
         ("raster fill", PpllDesc::default().fill(Fill::Raster).into()),
         ("mean of 1", shortcut.k(1).into()),
         ("mean of 3", shortcut.into()),
@@ -113,6 +113,8 @@ fn every_technique_is_the_same_on_both_backends() {
         ("mean of 3, raster fill", shortcut.fill(Fill::Raster).into()),
         ("3 in order", shortcut.ordered(true).into()),
         ("8 in order", shortcut.k(8).ordered(true).into()),
+        ("tiles", TilesDesc::default().into()),
+        ("tiles without an end", TilesDesc::default().closed_below(0.0).into()),
     ];
     let scenes: Vec<Scene> = techniques
         .into_iter()

@@ -239,11 +239,16 @@ mod tests {
     use crate::ppll::{K_RANGE, Ppll, PpllDesc};
     use crate::segments::Fill;
     use crate::shortcut::{ShortCut, ShortCutDesc};
+    use crate::tiles::{Tiles, TilesDesc, TilesUniform};
     use crate::uniforms::{LensUniform, LightUniform, SectionUniform, ViewUniform};
 
     fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
         let desc = ShortCutDesc::default().k(k).ordered(ordered);
         ShortCut::new(backend, &desc, [64, 64], Format::Rgba16F).unwrap()
+    }
+
+    fn tiles(backend: &mut NullBackend) -> Tiles {
+        Tiles::new(backend, &TilesDesc::default(), [64, 64], Format::Rgba16F).unwrap()
     }
 
     #[test]
@@ -268,6 +273,17 @@ mod tests {
         for shader in [fill, resolve] {
             shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
         }
+        let tiles = tiles(&mut backend);
+        let [points, depth, bin, alloc, blend] = tiles.shaders();
+        for shader in [points, depth, bin, alloc, blend] {
+            shader.check_layout::<ViewUniform>().unwrap();
+            shader.check_layout::<LensUniform>().unwrap();
+        }
+        points.check_layout::<SectionUniform>().unwrap();
+        blend.check_layout::<Counters>().unwrap();
+        for shader in [bin, blend] {
+            shader.check_layout::<TilesUniform>().unwrap();
+        }
     }
 
     #[test]
@@ -286,6 +302,8 @@ mod tests {
             let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
+        let counts = tiles(&mut backend).shaders().map(|shader| shader.storage_buffers());
+        assert_eq!(counts.into_iter().max(), Some(8), "{counts:?}: what `check` asks for");
         let lists = PpllDesc::default().fill(Fill::Raster);
         let lists = Ppll::new(&mut backend, &lists, [64, 64], Format::Rgba8Srgb).unwrap();
         let layers = ShortCutDesc::default().fill(Fill::Raster);

@@ -1,0 +1,310 @@
+//! Tiles against the f64 picture in exact order, and what they promise: nothing is lost, and the bits are the same every time.
+
+mod support;
+
+use std::collections::{HashMap, HashSet};
+
+use glam::{DVec4, Vec3};
+use tressfx_asset::mesh::Mesh;
+use tressfx_backend_vulkan::VulkanBackend;
+use tressfx_conformance::render::{Difference, Groom, Picture, Screen, Setup};
+use tressfx_core::error::Label;
+use tressfx_core::pass::{Command, PassList};
+use tressfx_core::shader::Binding;
+use tressfx_core::view::Pose;
+use tressfx_render::{Counters, Material, SectionDraw, TilesDesc, ViewDraw, reference};
+
+use support::screen;
+
+/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
+fn material() -> Material {
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+        m.variation = 1.0;
+    })
+}
+
+/// Hair through which hundreds of fragments of a pixel are seen.
+fn faint() -> Material {
+    material().with(|m| {
+        m.fibre_radius = Some(0.01);
+        (m.opacity, m.tip_opacity) = (0.03, 0.02);
+    })
+}
+
+fn tiles(setup: &mut Setup) {
+    setup.technique = TilesDesc::default().into();
+}
+
+/// Tiles that make every fragment, however little of it is seen.
+fn endless(setup: &mut Setup) {
+    setup.technique = TilesDesc::default().closed_below(0.0).into();
+}
+
+/// As near as half floats can come.
+fn rounded(exact: &[DVec4]) -> Vec<DVec4> {
+    let half = |x: f64| half::f16::from_f64(x).to_f64();
+    exact.iter().map(|pixel| DVec4::from_array(pixel.to_array().map(half))).collect()
+}
+
+#[test]
+fn loose_and_dense_hair_is_as_in_exact_order() {
+    let grooms = [
+        ("loose", Groom::wavy(60, 12, 1, material()), [96, 64], 2.0),
+        ("dense", Groom::wavy(1500, 16, 3, material()), [96, 64], 30.0),
+        ("faint", Groom::wavy(6000, 16, 4, faint()), [48, 32], 250.0),
+    ];
+    for (name, groom, size, in_a_pixel) in grooms {
+        for closed_below in [TilesDesc::default().closed_below, 0.0] {
+            let technique = TilesDesc::default().closed_below(closed_below).into();
+            let Some(mut screen) = screen(|setup| (setup.technique, setup.size) = (technique, size)) else { return };
+            let (picture, exact) = (screen.hair(&[&groom]), screen.exact(&[&groom]));
+            let (difference, best) = (picture.difference(&exact), Difference::between(&rounded(&exact), &exact));
+            eprintln!("{name}, closed below {closed_below}: {difference:?}, half floats {:.1}", best.psnr);
+            let Counters { fragments, pixels_with_hair, .. } = picture.counters;
+            assert!(f64::from(fragments) > in_a_pixel * f64::from(pixels_with_hair), "{:?}", picture.counters);
+            // What is left out lies behind what lets so little through.
+            let brightest = exact.iter().map(|pixel| pixel.max_element()).fold(1.0, f64::max);
+            let most = f64::from(closed_below) * brightest + 0.0004;
+            assert!(difference.max < most, "{name}: {difference:?}, {most}");
+            assert!(closed_below > 0.0 || difference.psnr > best.psnr - 2.5, "{name}: {difference:?}, {best:?}");
+        }
+    }
+}
+
+#[test]
+fn a_pixel_is_closed_where_less_passes_than_was_asked_for() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let mut last = (0, 0.0);
+    for closed_below in [2.0, 0.1, 0.001, 0.0] {
+        let technique = TilesDesc::default().closed_below(closed_below).into();
+        let Some(mut screen) = screen(|setup| setup.technique = technique) else { return };
+        let picture = screen.hair(&[&groom]);
+        let psnr = picture.difference(&screen.exact(&[&groom])).psnr;
+        assert!((picture.counters.fragments, psnr) > last, "{closed_below}: {:?}, {psnr} dB", picture.counters);
+        assert!(closed_below < 1.0 || picture.bytes.iter().all(|&byte| byte == 0), "all are closed before they begin");
+        last = (picture.counters.fragments, psnr);
+    }
+}
+
+#[test]
+fn the_same_bits_every_time_and_on_both_backends_whatever_the_order_of_sections() {
+    let (groom, hazy) = (Groom::wavy(6000, 16, 6, material()), Groom::wavy(800, 12, 7, faint()));
+    let mut pictures: Vec<[Picture; 2]> = Vec::new();
+    for vulkan in [false, true] {
+        let large = |setup: &mut Setup| {
+            tiles(setup);
+            setup.size = [320, 200];
+        };
+        let made =
+            if vulkan { Some(Screen::new(Box::new(VulkanBackend::headless().unwrap()), large)) } else { screen(large) };
+        let Some(mut screen) = made else { return };
+        let mut draw = || [screen.hair(&[&groom]), screen.hair(&[&groom, &hazy])];
+        let first = draw();
+        assert!(first[0].counters.fragments > 300_000, "many threads race: {:?}", first[0].counters);
+        for _ in 0..2 {
+            let again = draw();
+            assert!(first.iter().zip(&again).all(|(a, b)| a.bytes == b.bytes && a.counters == b.counters));
+        }
+        assert!(screen.hair(&[&hazy, &groom]).bytes == first[1].bytes, "the order of sections is no order of depth");
+        pictures.push(first);
+    }
+    // Two compilers may round in two ways, though those of this technique need not.
+    for (wgpu, vulkan) in pictures[0].iter().zip(&pictures[1]) {
+        assert!(wgpu.bytes == vulkan.bytes, "{:?}", wgpu.difference(&vulkan.pixels()));
+    }
+}
+
+#[test]
+fn too_many_fragments_of_one_depth_are_their_mean() {
+    let across =
+        |z: f32| -> Vec<Vec3> { (0..4).map(|v| Vec3::new(0.3 * v as f32 - 0.45, 0.0, z * (v as f32 - 1.5))).collect() };
+    // In one plane before the eye, and through many depths.
+    for (z, opacity) in [(0.0, 0.004), (0.1, 0.004), (0.1, 0.5), (0.0, 1.0)] {
+        let material = material().with(|m| {
+            m.fibre_radius = Some(0.02);
+            (m.opacity, m.tip_opacity) = (opacity, opacity);
+        });
+        // More than a group has room for, in each pixel.
+        let groom = Groom::new(&vec![across(z); 1000], material);
+        let Some(mut screen) = screen(endless) else { return };
+        let far = screen.view.depth().far();
+        let mean = reference::resolved(&screen.view, &screen.lights, &[groom.reference()], &|_| far, 0);
+        let picture = screen.hair(&[&groom]);
+        let difference = picture.difference(&mean);
+        eprintln!("z {z}, opacity {opacity}: {difference:?}, {:?}", picture.counters);
+        assert!(mean.iter().filter(|pixel| pixel.w > 0.5).count() > 40);
+        // Each colour times alpha is rounded to 1/256 before it is added: half of that, by alpha, may be missing in the mean.
+        // Each optical depth is rounded down to 1/2048, of log2, which adds up where fragments are faint.
+        let most = 0.001 + 0.5 / 256.0 / f64::from(opacity);
+        let of_alpha = picture.pixels().iter().zip(&mean).map(|(a, b)| (a.w - b.w).abs()).fold(0.0, f64::max);
+        assert!(
+            difference.max < most && of_alpha < if opacity < 0.1 { 0.03 } else { 0.001 },
+            "{difference:?}, {of_alpha} of alpha"
+        );
+        assert!(screen.hair(&[&groom]).bytes == picture.bytes);
+    }
+}
+
+/// What a pass binds under a name; of several passes of one label, the first.
+fn bound(list: &PassList, label: Label, name: &str) -> Binding {
+    let (_, command) = list.passes().find(|(of, _)| *of == label).unwrap_or_else(|| panic!("no pass is {label}"));
+    let Command::Compute(pass) = command else { panic!("{label} is no compute pass") };
+    let slot = pass.kernel.shader.slots.iter().position(|slot| slot.name == name);
+    pass.bindings.all()[slot.unwrap_or_else(|| panic!("{label} binds no `{name}`"))]
+}
+
+/// Draws grooms over the scene that is there, and reads what passes bound under these names.
+fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, &str, u64); N]) -> [Vec<u32>; N] {
+    let mut list = PassList::new();
+    let sections: Vec<_> = grooms.iter().map(|groom| screen.section(&mut list, groom)).collect();
+    let draws: Vec<_> = sections
+        .iter()
+        .zip(grooms)
+        .map(|(strands, groom)| SectionDraw::new(strands, &groom.material, groom.pose))
+        .collect();
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    screen.renderer.grow_to_predicted(&mut *screen.backend, &view, &draws).unwrap();
+    screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws).unwrap();
+    let tickets = names.map(|(label, name, count)| {
+        let Binding::Buffer { id, offset, bytes } = bound(&list, label, name) else { panic!("`{name}` is no buffer") };
+        assert!(bytes.is_none_or(|bytes| bytes >= 4 * count), "{label}: `{name}` is shorter");
+        list.read_buffer(id, offset, 4 * count)
+    });
+    screen.backend.run(&list).unwrap();
+    tickets.map(|ticket| bytemuck::pod_collect_to_vec(&screen.backend.read(ticket).ready().expect("it has run")))
+}
+
+#[test]
+fn tile_points_leaves_vertices_before_the_eye() {
+    let Some(mut screen) = screen(tiles) else { return };
+    let pose = Pose { rotation: glam::Quat::from_rotation_y(0.8), translation: Vec3::new(0.1, -0.1, 0.2) };
+    let mut groom = Groom { pose, ..Groom::wavy(37, 12, 9, material().with(|m| m.tip_width = 0.3)) };
+    groom.positions[5][1] = f32::NAN;
+    let (label, count) = ("hair.render.tile_points", groom.positions.len() as u64);
+    let names = [(label, "points", 4 * count), (label, "paints", 2 * count), (label, "colors", 2 * count)];
+    let [points, paints, colors] = read(&mut screen, &[&groom], names);
+    assert!(paints == colors && colors.iter().any(|&color| color != 0));
+    let to_eye = screen.view.lens().to_eye.as_dmat4() * groom.pose.matrix().as_dmat4();
+    for (i, point) in points.chunks(4).enumerate() {
+        let point = DVec4::from_array([0, 1, 2, 3].map(|axis| f64::from(f32::from_bits(point[axis]))));
+        if i == 5 {
+            assert!(point.x.abs() > 1e12, "{point}: nothing is drawn from here");
+            continue;
+        }
+        let expected = to_eye.transform_point3(Vec3::from_slice(&groom.positions[i][..3]).as_dvec3());
+        assert!(point.truncate().distance(expected) < 1e-6, "{point} is not {expected}");
+        let radius = 0.005 * (0.3 + 0.7 * f64::from(groom.thickness[i]));
+        assert!((point.w - radius).abs() < 1e-8, "{point} is not {radius} wide");
+    }
+}
+
+/// A triangle that hides a part of the picture, nearer to its right.
+fn roof() -> Mesh {
+    let positions = vec![Vec3::new(-0.6, -0.7, -1.0), Vec3::new(1.5, -0.5, 0.6), Vec3::new(0.2, 1.1, 0.0)];
+    Mesh { positions, normals: vec![Vec3::Z; 3], indices: vec![0, 1, 2] }
+}
+
+const ODD: [u32; 2] = [93, 61];
+
+fn odd(setup: &mut Setup) {
+    endless(setup);
+    setup.size = ODD;
+}
+
+#[test]
+fn tile_depth_leaves_the_farthest_that_the_scene_shows() {
+    let Some(mut screen) = screen(odd) else { return };
+    screen.scene(&[&roof()], &[]);
+    let (depth, lens) = (screen.depth(), screen.view.lens());
+    let mut farthest = vec![f64::MAX; 12 * 8];
+    for (i, depth) in depth.iter().enumerate() {
+        let (x, y) = (i % 93, i / 93);
+        let nearness = (f64::from(*depth) - f64::from(lens.depth_offset)) * f64::from(lens.depth_scale);
+        let tile = &mut farthest[y / 8 * 12 + x / 8];
+        *tile = tile.min(nearness.max(0.0));
+    }
+    let groom = Groom::wavy(20, 4, 1, material());
+    let [depths] = read(&mut screen, &[&groom], [("hair.render.tile_depth", "depths", 96)]);
+    let (nearest, nothing) =
+        (farthest.iter().copied().fold(0.0, f64::max), farthest.iter().copied().fold(1.0, f64::min));
+    assert!(nearest > 0.3 && nothing < 0.03, "some tiles are hidden whole, others are not: {nearest}, {nothing}");
+    for (found, expected) in depths.into_iter().map(f32::from_bits).zip(farthest) {
+        assert!((f64::from(found) - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
+    }
+}
+
+/// The tiles that the fragments of each segment lie in, by its first vertex, in f64.
+fn touched(screen: &Screen, groom: &Groom, depth: &[f32]) -> HashSet<(u32, u32)> {
+    let (strands, vertices) = (groom.shape.guides, groom.shape.vertices);
+    let mut pairs = HashSet::new();
+    for start in 0..strands * (vertices - 1) {
+        let place = |vertex: u32| Vec3::from_slice(&groom.positions[(start + vertex * strands) as usize][..3]);
+        let mut segment = Groom::new(&[vec![place(0), place(1)]], groom.material);
+        segment.thickness = vec![groom.thickness[start as usize], groom.thickness[(start + strands) as usize]];
+        let scene = |[x, y]: [u32; 2]| depth[(y * ODD[0] + x) as usize];
+        reference::fill(&screen.view, &segment.reference(), &[DVec4::ONE; 2], &scene, &mut |fragment| {
+            pairs.insert((fragment.pixel[1] / 8 * 12 + fragment.pixel[0] / 8, start));
+        });
+    }
+    pairs
+}
+
+#[test]
+fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place() {
+    let Some(mut screen) = screen(odd) else { return };
+    let groom = Groom::wavy(400, 12, 3, material());
+    screen.scene(&[&roof()], &[]);
+    let depth = screen.depth();
+    let names = [
+        ("hair.render.tile_bin", "bins", 64 * 96),
+        ("hair.render.tile_bin", "references", u64::from(1u32 << 16)),
+        ("hair.render.tile_alloc", "queue", 12 + 4 * 8 * 96),
+    ];
+    let [bins, references, queue] = read(&mut screen, &[&groom], names);
+    let wanted = queue[0];
+    let classes = queue[4..12].iter().enumerate();
+    let waiting: Vec<_> = classes
+        .flat_map(|(class, &size)| (0..size as usize).map(move |i| 12 + 4 * (class * 96 + i)))
+        .map(|at| (queue[at], queue[at + 1]))
+        .collect();
+    let mut places: Vec<_> = waiting.iter().map(|&(tile, first)| (first, bins[63 * 96 + tile as usize])).collect();
+    places.sort_unstable();
+    assert!(places.windows(2).all(|pair| pair[0].1 == pair[1].0), "one behind the other: {places:?}");
+    assert_eq!((places[0].0, places[places.len() - 1].1), (0, wanted));
+    let mut nearest = HashMap::new();
+    for (tile, first) in waiting {
+        let end = bins[63 * 96 + tile as usize];
+        for reference in &references[first as usize..end as usize] {
+            *nearest.entry((tile, reference & 0x7fff_ffff)).or_insert(0) += reference >> 31;
+        }
+    }
+    assert!(nearest.values().all(|&flags| flags == 1), "one slice of a tile is the nearest");
+    let touched = touched(&screen, &groom, &depth);
+    eprintln!("{wanted} references to {} segments of tiles, of which {} leave fragments", nearest.len(), touched.len());
+    assert!(touched.len() > 4000 && touched.iter().all(|pair| nearest.contains_key(pair)));
+    assert!(nearest.len() < 2 * touched.len(), "what is referred to is near");
+}
+
+#[test]
+fn tile_blend_makes_each_fragment_once() {
+    for (groom, size) in [(Groom::wavy(300, 16, 2, material()), ODD), (Groom::wavy(3000, 16, 4, faint()), [48, 32])] {
+        let Some(mut lists) = screen(|setup| setup.size = size) else { return };
+        let Some(mut screen) = screen(|setup| {
+            endless(setup);
+            setup.size = size;
+        }) else {
+            return;
+        };
+        let [resolved] =
+            read(&mut screen, &[&groom], [("hair.render.tile_blend", "resolved", u64::from(2 * size[0] * size[1]))]);
+        assert!(bytemuck::cast_slice::<_, u8>(&resolved) == screen.hair(&[&groom]).bytes, "what lies over nothing");
+        for meshes in [&[][..], &[&roof()]] {
+            let (all, found) = (lists.scene(meshes, &[&groom]).counters, screen.scene(meshes, &[&groom]).counters);
+            assert_eq!(all.dropped, 0);
+            assert_eq!((found.fragments, found.pixels_with_hair), (all.fragments, all.pixels_with_hair));
+        }
+    }
+}

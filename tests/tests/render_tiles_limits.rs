@@ -1,0 +1,218 @@
+//! What tiles do where there is too little room, and with hair that no groom should hold.
+
+mod support;
+
+use glam::camera::rh;
+use glam::{Mat4, Vec3};
+use tressfx_conformance::render::{Groom, Picture, Random, Setup};
+use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
+use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
+use tressfx_core::strand_buffers::StrandBuffers;
+use tressfx_core::view::{Pose, View};
+use tressfx_render::{
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, Targets, TilesDesc, ViewDraw,
+};
+
+use support::screen;
+
+fn material() -> Material {
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+    })
+}
+
+fn tiles(setup: &mut Setup) {
+    setup.technique = TilesDesc::default().into();
+}
+
+fn is_sound(picture: &Picture) -> bool {
+    picture.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0 && pixel.w <= 1.0)
+}
+
+#[test]
+fn what_has_no_room_is_counted_and_its_room_is_exact() {
+    let groom = Groom::wavy(400, 16, 1, material());
+    let Some(mut roomy) = screen(tiles) else { return };
+    let all = roomy.hair(&[&groom]);
+    let wanted = all.counters.wanted;
+    assert!(wanted > 6400 && all.counters.dropped == 0, "{:?}", all.counters);
+    for capacity in [1, 1000, wanted / 2, wanted - 1, wanted] {
+        let few = TilesDesc::default().max_reference_bytes(4 * u64::from(capacity));
+        let Some(mut screen) = screen(|setup| setup.technique = few.into()) else { return };
+        let picture = screen.hair(&[&groom]);
+        assert_eq!(screen.renderer.capacity(), capacity);
+        assert_eq!(picture.counters.wanted, wanted, "what is wanted is counted all the same");
+        assert_eq!(picture.counters.dropped, wanted - capacity);
+        assert!(picture.pixels().iter().zip(all.pixels()).all(|(some, every)| some.w <= every.w + 0.001));
+        // The last reference may be to a segment that leaves nothing.
+        assert!(
+            capacity == wanted - 1 || (picture.bytes == all.bytes) == (capacity == wanted),
+            "{capacity} of {wanted}"
+        );
+        assert!(is_sound(&picture));
+        screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+        assert_eq!(screen.renderer.capacity(), capacity, "no more than was allowed");
+    }
+}
+
+#[test]
+fn what_is_measured_is_enough_for_the_next_frame() {
+    let large = |setup: &mut Setup| {
+        tiles(setup);
+        setup.size = [320, 200];
+    };
+    let groom = Groom::wavy(2500, 16, 4, material());
+    let Some(mut roomy) = screen(large) else { return };
+    let expected = roomy.hair(&[&groom]);
+    let (wanted, capacity) = (expected.counters.wanted, roomy.renderer.capacity());
+    assert_eq!(expected.counters.dropped, 0);
+    assert!(capacity < 4 * wanted, "the prediction is near: {capacity} for {wanted}");
+
+    let Some(mut screen) = screen(large) else { return };
+    // Room for the vertices, and for what a view needs that sees none of them.
+    let strands = screen.section(&mut PassList::new(), &groom);
+    let draw = SectionDraw::new(&strands, &groom.material, Pose::IDENTITY);
+    let away = rh::view::look_at_mat4(Vec3::Z * 9.0, Vec3::Z * 10.0, Vec3::Y);
+    let away = View::new(away, screen.view.projection_matrix(), DepthOrder::Reverse, [320, 200]).unwrap();
+    screen.renderer.grow_to_predicted(&mut *screen.backend, &away, &[draw]).unwrap();
+    screen.may_grow = false;
+    let dropping = screen.hair(&[&groom]).counters;
+    assert!(dropping.dropped > 0 && dropping.wanted == wanted, "{dropping:?}");
+    screen.renderer.grow_to_measured(&mut *screen.backend, &dropping).unwrap();
+    let complete = screen.hair(&[&groom]);
+    assert_eq!(complete.counters.dropped, 0, "one frame is enough to know");
+    assert!(complete.bytes == expected.bytes);
+    let grown = screen.renderer.capacity();
+    screen.renderer.grow_to_measured(&mut *screen.backend, &complete.counters).unwrap();
+    assert_eq!(screen.renderer.capacity(), grown, "enough is enough");
+}
+
+/// What is said where `count` sections are drawn, with or without room for them.
+fn drawn(count: usize, has_room: bool) -> Result<(), String> {
+    let mut backend = NullBackend::default();
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(TilesDesc::default());
+    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+    let mut texture = |format| backend.create_texture(&TextureDesc::new("test", [64, 64], format)).unwrap();
+    let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+    let groom = Groom::wavy(3, 4, 6, material());
+    let buffers = StrandBuffers::new(&mut backend, groom.shape, Vec3::ZERO).unwrap();
+    let section = ShadedStrands::new(&mut backend, &mut PassList::new(), buffers, groom.info.clone()).unwrap();
+    let draws = vec![SectionDraw::new(&section, &groom.material, Pose::IDENTITY); count];
+    let projection = rh::proj::directx::perspective(0.6, 1.0, 50.0, 0.05);
+    let view = View::new(Mat4::from_translation(Vec3::NEG_Z * 3.0), projection, DepthOrder::Reverse, [64, 64]).unwrap();
+    if has_room {
+        renderer.grow_to_predicted(&mut backend, &view, &draws).unwrap();
+    }
+    let lights = Lights::default();
+    let views = [ViewDraw::new(&view, &lights, targets)];
+    renderer.draw(&mut PassList::new(), &views, &draws).map_err(|error| error.to_string())
+}
+
+#[test]
+fn sections_without_room_and_too_many_sections_are_refused() {
+    assert_eq!(drawn(64, true), Ok(()));
+    let error = drawn(65, true).unwrap_err();
+    assert!(error.contains("65 sections, tiles can draw 64"), "{error}");
+    let error = drawn(1, false).unwrap_err();
+    assert!(error.contains("there is room for 0: `grow_to_predicted` makes room"), "{error}");
+}
+
+#[test]
+fn odd_screens_and_an_eye_within_the_hair() {
+    let groom = Groom::wavy(300, 16, 2, material());
+    for (size, limit) in [([1, 1], 1), ([16384, 1], 100), ([1, 300], 100), ([7, 9], 60)] {
+        let Some(mut screen) = screen(|setup| {
+            setup.technique = TilesDesc::default().closed_below(0.0).into();
+            setup.size = size;
+            setup.camera.fov = 1.0;
+        }) else {
+            return;
+        };
+        let picture = screen.hair(&[&groom]);
+        assert!(is_sound(&picture) && picture.counters.fragments > limit, "{size:?}: {:?}", picture.counters);
+        let difference = picture.difference(&screen.exact(&[&groom]));
+        eprintln!("{size:?}: {difference:?}");
+        assert!(difference.psnr > 70.0, "{size:?}: {difference:?}");
+    }
+    let Some(mut screen) = screen(|setup| {
+        tiles(setup);
+        setup.camera.eye = Vec3::new(0.1, 0.0, 0.2);
+        setup.camera.near = 0.001;
+    }) else {
+        return;
+    };
+    // From nothing to strands that are wider than the picture.
+    for radius in [0.0, 1e-6, 0.01, 3.0] {
+        let wide = Groom { material: material().with(|m| m.fibre_radius = Some(radius)), ..groom.clone() };
+        let picture = screen.hair(&[&wide]);
+        assert!(is_sound(&picture), "radius {radius}");
+        assert_eq!(picture.counters.fragments > 0, radius > 0.0, "radius {radius}: {:?}", picture.counters);
+        assert_eq!(picture.counters.dropped, 0, "radius {radius}");
+    }
+}
+
+#[test]
+fn hair_that_is_wide_clear_or_opaque_is_as_in_f64() {
+    let Some(mut screen) = screen(tiles) else { return };
+    for (radius, opacity) in [(0.005, 1.0), (0.005, 0.0), (0.5, 1.0), (1.5, 0.05)] {
+        let look = material().with(|m| {
+            m.fibre_radius = Some(radius);
+            (m.opacity, m.tip_opacity) = (opacity, opacity);
+        });
+        let groom = Groom::wavy(40, 6, 5, look);
+        let picture = screen.hair(&[&groom]);
+        let difference = picture.difference(&screen.exact(&[&groom]));
+        eprintln!("radius {radius}, opacity {opacity}: {difference:?}, {:?}", picture.counters);
+        if opacity == 0.0 {
+            assert!(picture.bytes.iter().all(|&byte| byte == 0) && picture.counters.fragments == 0);
+        } else {
+            assert!(picture.counters.pixels_with_hair > 500 && difference.psnr > 70.0, "{difference:?}");
+        }
+    }
+}
+
+#[test]
+fn every_strand_in_one_pixel() {
+    let mut random = Random(5);
+    // A pixel is 0.03 wide where they are; its middle is half of that from the middle of the picture.
+    let strand = |_| {
+        let (z, y) = (0.6 * random.unit() - 0.3, 0.004 * random.unit() - 0.016);
+        vec![Vec3::new(0.004, y, z), Vec3::new(0.025, y, z)]
+    };
+    let look = material().with(|m| (m.opacity, m.tip_opacity, m.variation) = (0.002, 0.002, 1.0));
+    let groom = Groom::new(&(0..10_000).map(strand).collect::<Vec<_>>(), look);
+    let Some(mut screen) = screen(tiles) else { return };
+    let picture = screen.hair(&[&groom]);
+    let difference = picture.difference(&screen.exact(&[&groom]));
+    eprintln!("{:?}, {difference:?}", picture.counters);
+    assert!(picture.counters.fragments > 9000 && picture.counters.pixels_with_hair <= 4);
+    assert!(difference.max < 0.002, "{difference:?}");
+}
+
+#[test]
+fn positions_that_are_not_finite_leave_out_their_segments_alone() {
+    let Some(mut screen) = screen(tiles) else { return };
+    let whole = Groom::wavy(30, 8, 1, material());
+    let expected = screen.hair(&[&whole]).counters;
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -1e13] {
+        let mut groom = whole.clone();
+        // One vertex in the middle of strand 4, one at the tip of strand 9, one at the root of strand 11.
+        for (strand, vertex) in [(4, 3), (9, 7), (11, 0)] {
+            groom.positions[vertex * 30 + strand][1] = bad;
+        }
+        let picture = screen.hair(&[&groom]);
+        assert!(is_sound(&picture), "{bad}");
+        let lost = f64::from(expected.fragments - picture.counters.fragments);
+        let lost = lost * 30.0 * 7.0 / f64::from(expected.fragments);
+        assert!((2.0..7.0).contains(&lost), "{bad}: about four segments are gone, {lost}");
+    }
+    let mut lost = whole.clone();
+    lost.positions.fill([f32::NAN; 4]);
+    let picture = screen.hair(&[&lost, &Groom::new(&[], material())]);
+    assert!(picture.counters == Counters::default() && picture.bytes.iter().all(|&byte| byte == 0));
+    lost.positions.fill([0.1, 0.1, 0.1, 1.0]);
+    assert_eq!(screen.hair(&[&lost]).counters.fragments, 0, "strands that are points");
+}
