@@ -76,7 +76,7 @@ fn a_renderer_its_size_and_its_sections() {
     assert!(failures > 1, "{failures} creations");
     assert!(backend.living().0 == before.0 && backend.living().1 > before.1, "as many, and larger");
     let (before, capacity) = (backend.living(), renderer.capacity());
-    let many = Counters { fragments: 8 * capacity, ..Counters::default() };
+    let many = Counters { wanted: 8 * capacity, ..Counters::default() };
     let ((), failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &many));
     assert_eq!(failures, 1, "the new nodes; the old ones stay where they cannot be made");
     assert!(renderer.capacity() > capacity && backend.living().0 == before.0);

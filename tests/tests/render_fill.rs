@@ -47,7 +47,7 @@ fn both(
             change(setup);
             setup.technique = with_fill(technique, fill);
         })?;
-        let many = Counters { fragments: 2_000_000, ..Counters::default() };
+        let many = Counters { wanted: 2_000_000, ..Counters::default() };
         screen.renderer.grow_to_measured(&mut *screen.backend, &many).unwrap();
         pictures.push(draw(&mut screen));
     }

@@ -83,7 +83,7 @@ fn the_pool_is_predicted_and_then_measured() {
 #[test]
 fn the_caller_and_the_device_limit_the_pool() {
     let Some(mut screen) = screen(|setup| setup.ppll().max_node_bytes = 16 * 7000) else { return };
-    let huge = tressfx_render::Counters { fragments: u32::MAX, ..Default::default() };
+    let huge = tressfx_render::Counters { wanted: u32::MAX, ..Default::default() };
     screen.renderer.grow_to_measured(&mut *screen.backend, &huge).unwrap();
     assert_eq!(screen.renderer.capacity(), 7000);
     let mut backend = NullBackend::default();
@@ -163,7 +163,7 @@ fn a_counter_that_is_full_stays_full_and_says_so() {
     // From a counter that a few requests fill, over one that groups get to at the same time, to one that just holds all.
     for limit in [1, 64, 4096, all.fragments / 2, all.fragments, all.fragments + 1] {
         let Some(mut screen) = screen(|setup| setup.ppll().count_limit = limit) else { return };
-        let huge = tressfx_render::Counters { fragments: u32::MAX, ..Default::default() };
+        let huge = tressfx_render::Counters { wanted: u32::MAX, ..Default::default() };
         screen.renderer.grow_to_measured(&mut *screen.backend, &huge).unwrap();
         assert_eq!(screen.renderer.capacity(), limit, "there is no node that cannot be counted");
         let picture = screen.hair(&[&groom]);

@@ -178,7 +178,7 @@ fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, 
 }
 
 #[test]
-fn tile_points_leaves_vertices_before_the_eye() {
+fn tile_points_leaves_vertices_on_the_screen() {
     let Some(mut screen) = screen(tiles) else { return };
     let pose = Pose { rotation: glam::Quat::from_rotation_y(0.8), translation: Vec3::new(0.1, -0.1, 0.2) };
     let mut groom = Groom { pose, ..Groom::wavy(37, 12, 9, material().with(|m| m.tip_width = 0.3)) };
@@ -187,7 +187,8 @@ fn tile_points_leaves_vertices_before_the_eye() {
     let names = [(label, "points", 4 * count), (label, "paints", 2 * count), (label, "colors", 2 * count)];
     let [points, paints, colors] = read(&mut screen, &[&groom], names);
     assert!(paints == colors && colors.iter().any(|&color| color != 0));
-    let to_eye = screen.view.lens().to_eye.as_dmat4() * groom.pose.matrix().as_dmat4();
+    let lens = screen.view.lens();
+    let to_eye = lens.to_eye.as_dmat4() * groom.pose.matrix().as_dmat4();
     for (i, point) in points.chunks(4).enumerate() {
         let point = DVec4::from_array([0, 1, 2, 3].map(|axis| f64::from(f32::from_bits(point[axis]))));
         if i == 5 {
@@ -195,8 +196,11 @@ fn tile_points_leaves_vertices_before_the_eye() {
             continue;
         }
         let expected = to_eye.transform_point3(Vec3::from_slice(&groom.positions[i][..3]).as_dvec3());
-        assert!(point.truncate().distance(expected) < 1e-6, "{point} is not {expected}");
-        let radius = 0.005 * (0.3 + 0.7 * f64::from(groom.thickness[i]));
+        let pixel = lens.center.as_dvec2()
+            + lens.focal.as_dvec2() * expected.truncate() * glam::DVec2::new(1.0, -1.0) / -expected.z;
+        assert!(point.truncate().truncate().distance(pixel) < 1e-4, "{point} is not at {pixel}");
+        assert!((point.z * -expected.z - 1.0).abs() < 1e-6, "{point} is not as near as {expected}");
+        let radius = 0.005 * (0.3 + 0.7 * f64::from(groom.thickness[i])) / -expected.z;
         assert!((point.w - radius).abs() < 1e-8, "{point} is not {radius} wide");
     }
 }

@@ -168,7 +168,7 @@ impl TechniqueInstance for ShortCut {
 /// Whether a device can draw hair on a screen of this size.
 fn check(backend: &dyn Backend, desc: &ShortCutDesc, size: [u32; 2]) -> Result<()> {
     let largest = memory::bytes_of_pixel(desc).into_iter().max().unwrap_or(0) * pixels(size);
-    let needs = [Need::StorageBuffers(6), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(largest)];
+    let needs = [Need::StorageBuffers(7), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(largest)];
     backend.caps().check("hair.render", &needs)?;
     check_pixels(size)
 }

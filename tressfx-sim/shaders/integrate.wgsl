@@ -5,6 +5,7 @@
 import package::grid::{GROUP, thread_index};
 import package::root::{Root, carried, root_of, shape_of};
 import package::step::step;
+import package::vector::rotate;
 
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> previous: array<vec4<f32>>;
@@ -28,8 +29,10 @@ fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) g
         previous[i] = vec4(shape, 0.0);
         return;
     }
-    let here = shocked(root, positions[place].xyz);
-    let free = moved_on(root, here, shocked(root, previous[i].xyz));
+    let last = positions[place].xyz;
+    let past = previous[i].xyz;
+    let here = shocked(root, last);
+    let free = moved_on(root, here, shocked_displacement(root, last - past), shocked(root, past));
     previous[i] = vec4(here, 0.0);
     positions[place] = vec4(pulled_to_shape(free, shape, vertex), rest_here.w);
 }
@@ -42,9 +45,15 @@ fn shocked(root: Root, last: vec3<f32>) -> vec3<f32> {
     return here + step.shock * (carried(root, last) - here);
 }
 
+/// The displacement between two points that have made their share of the root's motion. From their displacement before it,
+/// since the difference of two rounded points would lose more.
+fn shocked_displacement(root: Root, last: vec3<f32>) -> vec3<f32> {
+    return last + step.shock * (rotate(root.turn, last) - last);
+}
+
 /// Where a vertex gets to by its own velocity and gravity.
-fn moved_on(root: Root, here: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    return here + step.velocity_kept * bounded(root, here - before, before) + step.gravity;
+fn moved_on(root: Root, here: vec3<f32>, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
+    return here + step.velocity_kept * bounded(root, displacement, before) + step.gravity;
 }
 
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the

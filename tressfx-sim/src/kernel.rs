@@ -161,7 +161,7 @@ mod tests {
         fn fused() {
             let root = root_of(0u);
             let last = shocked(root, strand[0].xyz);
-            let free = moved_on(root, last, shocked(root, strand[1].xyz)) + across_edge(wind_of(0u), DOWN);
+            let free = moved_on(root, last, DOWN, shocked(root, strand[1].xyz)) + across_edge(wind_of(0u), DOWN);
             let edge = bent(BentEdge(root.rotation, vec4(last, 0.0), vec4(free, 1.0)), DOWN);
             var window: Window;
             var placing = Placing(edge.here, last, vec3(0.0), vec3(0.0), DOWN);
