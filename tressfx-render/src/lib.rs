@@ -11,6 +11,12 @@
 //! hair.render.shortcut_colors   compute  one thread a strand segment: colours down to the last depth        Technique::ShortCut
 //! hair.render.shortcut_resolve  compute  one thread a pixel: their mean, or in order                        Technique::ShortCut
 //!
+//! hair.render.tile_points       compute  one thread a strand vertex: on the screen, all sections in one row Technique::Tiles
+//! hair.render.tile_depth        compute  eight threads a tile: the farthest that the scene shows            Technique::Tiles
+//! hair.render.tile_bin          compute  one thread a segment, twice: counted and referred to from tiles    Technique::Tiles
+//! hair.render.tile_alloc        compute  eight threads a tile: where its references go                      Technique::Tiles
+//! hair.render.tile_blend        compute  a group a tile: its fragments in order                             Technique::Tiles
+//!
 //! hair.render.composite         raster   tiles of pixels with hair: blended over the caller's picture       every technique
 //! ```
 //!

@@ -142,6 +142,9 @@ pub(crate) struct Render {
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
+    /// Fail if any hair found no room and is missing in the picture
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Draw the last frame with the reference renderer: rays through fibres as solids, on the CPU
     #[arg(long)]
     pub(crate) reference: bool,

@@ -50,6 +50,11 @@ enum OitName {
 }
 
 impl Oit {
+    /// Whether it is tiles.
+    pub(crate) fn is_tiles(&self) -> bool {
+        self.oit == OitName::Tiles
+    }
+
     /// The technique that was asked for.
     pub(crate) fn technique(&self) -> Result<Technique> {
         if self.oit_ordered && self.oit != OitName::Shortcut {

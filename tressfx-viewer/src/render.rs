@@ -32,7 +32,22 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         output.push(frames - 1, reference::picture(&mut run, &mut studio, args)?)?;
     }
     output.finish(args.scene.fps)?;
-    run.report(&args.scene, studio.drawn)
+    run.report(&args.scene, studio.drawn)?;
+    check_whole(args, studio.drawn.dropped)
+}
+
+/// Says what is missing in the picture, and fails if that was asked for.
+fn check_whole(args: &Render, dropped: u64) -> Result<()> {
+    if dropped == 0 || args.reference {
+        return Ok(());
+    }
+    let what = if args.oit.is_tiles() { "references of tiles to segments" } else { "fragments" };
+    let missing = format!("{dropped} {what} found no room: hair is missing in the picture");
+    if args.strict {
+        bail!(missing);
+    }
+    eprintln!("{missing}");
+    Ok(())
 }
 
 /// Simulates a frame, and draws it if it is wanted.

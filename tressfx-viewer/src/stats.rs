@@ -53,7 +53,7 @@ pub(crate) struct SimStats {
 pub(crate) struct RenderStats {
     /// That hair made, dropped ones too.
     pub(crate) fragments: u64,
-    /// That found no place in the node pool.
+    /// What found no room: fragments, or references of tiles to segments.
     pub(crate) dropped: u64,
     pub(crate) pixels_with_hair: u64,
     /// Of all buffers and textures.
