@@ -18,7 +18,7 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
     Fill, HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc,
-    StrandInfo, Targets, Technique, ViewDraw,
+    StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, StepInput, Wind};
 
@@ -147,17 +147,19 @@ fn everything() -> PassList {
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let lights = Lights::default();
-    let techniques: [Technique; 6] = [
+    let techniques: [Technique; 7] = [
         PpllDesc::default().into(),
         PpllDesc::default().fill(Fill::Raster).into(),
         ShortCutDesc::default().into(),
         ShortCutDesc::default().ordered(true).into(),
         ShortCutDesc::default().fill(Fill::Raster).into(),
         ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
+        TilesDesc::default().into(),
     ];
     for technique in techniques {
         let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);
         let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+        renderer.grow_to_predicted(&mut backend, &view, &[draw]).unwrap();
         renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     }
     list

@@ -39,22 +39,20 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
     let all = roomy.hair(&[&groom]);
     let wanted = all.counters.wanted;
     assert!(wanted > 6400 && all.counters.dropped == 0, "{:?}", all.counters);
-    for capacity in [1, 1000, wanted / 2, wanted - 1, wanted] {
-        let few = TilesDesc::default().max_reference_bytes(4 * u64::from(capacity));
+    for room in [1, 4000, wanted / 2, wanted] {
+        let few = TilesDesc::default().max_reference_bytes(4 * u64::from(room));
         let Some(mut screen) = screen(|setup| setup.technique = few.into()) else { return };
         let picture = screen.hair(&[&groom]);
-        assert_eq!(screen.renderer.capacity(), capacity);
         assert_eq!(picture.counters.wanted, wanted, "what is wanted is counted all the same");
-        assert_eq!(picture.counters.dropped, wanted - capacity);
+        let beyond = wanted.saturating_sub(screen.renderer.capacity());
+        assert!((beyond..=wanted).contains(&picture.counters.dropped), "{:?}", picture.counters);
         assert!(picture.pixels().iter().zip(all.pixels()).all(|(some, every)| some.w <= every.w + 0.001));
-        // The last reference may be to a segment that leaves nothing.
-        assert!(
-            capacity == wanted - 1 || (picture.bytes == all.bytes) == (capacity == wanted),
-            "{capacity} of {wanted}"
-        );
         assert!(is_sound(&picture));
         screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
-        assert_eq!(screen.renderer.capacity(), capacity, "no more than was allowed");
+        let again = screen.hair(&[&groom]);
+        // With room for a single one, 64 rounds do not reach.
+        assert_eq!(again.counters.dropped > 0, room == 1, "{room} of {wanted}");
+        assert!(room == 1 || again.bytes == all.bytes, "{room} of {wanted}");
     }
 }
 

@@ -35,7 +35,7 @@ pub(crate) use layout::TilesUniform;
 #[non_exhaustive]
 pub struct TilesDesc {
     /// Memory that the references to segments may take, 4 bytes each; at most [`TilesDesc::MAX_REFERENCE_BYTES`]. The device's
-    /// own limit for one binding holds too.
+    /// own limit for one binding holds too. Where a picture needs more, its tiles are drawn in rounds.
     pub max_reference_bytes: u64,
     /// Transmittance of a pixel below which nothing more is blended into it.
     pub closed_below: f32,
@@ -127,7 +127,7 @@ impl TechniqueInstance for Tiles {
     }
 
     fn capacity(&self) -> u32 {
-        self.memory.references.count
+        self.memory.references.covered()
     }
 
     fn bytes(&self) -> u64 {
@@ -153,17 +153,19 @@ impl TechniqueInstance for Tiles {
             );
             return Err(Error::rule("hair.render.tiles", message));
         }
-        let uniforms = layout.uniforms(view.view, draws, &self.desc, self.memory.references.count);
-        self.memory.uniforms.upload(list, 2 * view.index, &uniforms);
+        let uniforms = layout.uniforms(view.view, draws, &self.desc, &self.memory.references);
+        self.memory.uniforms.upload(list, view.index * memory::UNIFORMS_OF_A_VIEW, &uniforms);
         self.memory.clear(list, view.size);
         for (draw, &first) in draws.iter().zip(&layout.first_vertices) {
             self.kernels.points(list, view, draw, &self.memory, first)?;
         }
         self.kernels.depth(list, view, &self.memory, targets.depth)?;
-        self.kernels.bin(list, view, &self.memory, layout.segments, false)?;
+        self.kernels.bin(list, view, &self.memory, layout.segments, None)?;
         self.kernels.alloc(list, view, &self.memory)?;
-        self.kernels.bin(list, view, &self.memory, layout.segments, true)?;
-        self.kernels.blend(list, view, &self.memory, targets.depth)?;
+        for round in 0..self.memory.references.rounds {
+            self.kernels.bin(list, view, &self.memory, layout.segments, Some(round))?;
+            self.kernels.blend(list, view, &self.memory, targets.depth, round)?;
+        }
         self.composite.pass(list, view, &self.memory.screen.resolved, targets.color)
     }
 }

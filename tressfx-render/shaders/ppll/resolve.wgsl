@@ -115,7 +115,7 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
     if lane == 0u && all(group.xy == vec2(0u)) {
         let wanted = atomicLoad(&counters.fragments);
         counters.wanted = wanted;
-        counters.dropped = max(wanted, pool.capacity) - pool.capacity;
+        atomicStore(&counters.dropped, max(wanted, pool.capacity) - pool.capacity);
         counters.saturated = u32(wanted >= pool.limit);
     }
     if inside && count > 0u {

@@ -4,7 +4,7 @@ struct Counters {
     // Fragments that passed the depth test.
     fragments: atomic<u32>,
     // What found no room: fragments, or references.
-    dropped: u32,
+    dropped: atomic<u32>,
     // Pixels with at least one fragment.
     pixels_with_hair: atomic<u32>,
     // 1 where counting has ended at the limit.

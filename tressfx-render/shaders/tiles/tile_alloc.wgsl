@@ -17,6 +17,9 @@ import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, parts_of, tile
 // Nearness of the nearest vertex, a tile.
 @group(0) @binding(10) var<storage, read> nearests: array<f32>;
 
+// The first reference of a tile.
+@group(0) @binding(12) var<storage, read_write> firsts: array<u32>;
+
 const PARTS: u32 = 8u;
 const TILES: u32 = GROUP / PARTS;
 const SLICES_OF_A_LANE: u32 = SLICES / PARTS;
@@ -129,6 +132,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         place = min(place + min(in_bins[i], MOST), 2u * MOST);
     }
     if part == 0u {
+        firsts[tile] = first;
         hairy[group_tile + place_of_tile] = tile;
         queue.tiles[load_class * tile_count() + class_places[load_class] + position] =
             WaitingTile(tile, first, nearests[tile], 0u);

@@ -1,5 +1,5 @@
 // Segments are referred to from the slices of the tiles that they touch. It runs twice: to count the references of each bin,
-// and, once each bin has its place, to store them. Both are the same code, compiled once, so that a compiler cannot round them
+// and, once each bin has its place, to store them; where there is no room for all, for some tiles a round. All are the same code, compiled once, so that a compiler cannot round them
 // differently: a bin gets exactly what was counted for it. One thread a segment.
 
 import package::grid::{GROUP, thread_index};
@@ -14,6 +14,8 @@ import package::tiles::{IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
+// The first reference of a tile, once it has its place.
+@group(0) @binding(10) var<storage, read> firsts: array<u32>;
 // Nearness of the nearest vertex, a tile.
 @group(0) @binding(9) var<storage, read> nearests: array<f32>;
 
@@ -27,7 +29,7 @@ fn refer(bin: u32, reference: u32) {
         atomicAdd(&bins[bin], 1u);
         return;
     }
-    let place = atomicAdd(&bins[bin], 1u);
+    let place = atomicAdd(&bins[bin], 1u) - tiles.first;
     if place < tiles.capacity {
         references[place] = reference;
     }
@@ -70,6 +72,10 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
         let tile = place.y * tile_columns() + place.x;
         if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
+            continue;
+        }
+        if tiles.stores == 1u && (firsts[tile] < tiles.first || firsts[tile] >= tiles.end) {
+            // The tile has its references in another round.
             continue;
         }
         let begin = begin_of(nearests[tile]);

@@ -40,6 +40,7 @@ const MEAN_UNIT: f32 = 256.0;
 struct Job {
     tile: WaitingTile,
     part: u32,
+    // 0 where it is not its turn.
     parts: u32,
 }
 
@@ -78,7 +79,9 @@ fn job_of(group: u32) -> Job {
         let size = queue.sizes[i - 1u];
         if rest < size * parts {
             let tile = queue.tiles[(i - 1u) * tile_count() + rest / parts];
-            return Job(tile, rest % parts, parts);
+            // A tile has its references in one round.
+            let is_now = tile.first >= tiles.first && tile.first < tiles.end;
+            return Job(tile, rest % parts, select(0u, parts, is_now));
         }
         rest -= size * parts;
     }
@@ -275,7 +278,7 @@ fn close(pixel: u32) {
 
 fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
     if lane < SLICES {
-        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile], tiles.capacity);
+        bounds[lane + 1u] = min(bins[lane * tile_count() + tile.tile] - tiles.first, tiles.capacity);
     }
     if lane < 2u {
         atomicStore(&closed[lane], 0u);
@@ -287,7 +290,7 @@ fn prepare(tile: WaitingTile, lane: u32, pixel: vec2<u32>, is_inside: bool) {
         }
     }
     if lane == 0u {
-        bounds[0] = min(tile.first, tiles.capacity);
+        bounds[0] = min(tile.first - tiles.first, tiles.capacity);
         begin = begin_of(tile.nearest);
         atomicStore(&total, 0u);
         atomicStore(&hairy_pixels, 0u);
@@ -372,19 +375,28 @@ fn blend_part(own: Job, lane: u32) {
     }
 }
 
+// References that have no room: those behind all rounds, and those of a tile that has more than a round has left for it.
+fn count_dropped(group: u32) {
+    if group == 0u && tiles.first == 0u {
+        counters.wanted = queue.references;
+        atomicAdd(&counters.dropped, max(queue.references, tiles.covered) - tiles.covered);
+    }
+    if tiles.end != 0xffffffffu && job.part == 0u && job.parts > 0u {
+        let end = min(bins[(SLICES - 1u) * tile_count() + job.tile.tile], tiles.covered) - tiles.first;
+        atomicAdd(&counters.dropped, max(end, tiles.capacity) - tiles.capacity);
+    }
+}
+
 @compute @workgroup_size(LANES)
 fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
               @builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         let index = group.y * groups.x + group.x;
         job = job_of(index);
-        if index == 0u {
-            counters.wanted = queue.references;
-            counters.dropped = max(queue.references, tiles.capacity) - tiles.capacity;
-        }
+        count_dropped(index);
     }
     let own = workgroupUniformLoad(&job);
-    if own.tile.tile != NO_TILE {
+    if own.tile.tile != NO_TILE && own.parts > 0u {
         blend_part(own, lane);
     }
 }

@@ -29,7 +29,13 @@ struct TilesUniform {
     depth: f32,
     // Transmittance of a pixel below which nothing more is seen.
     closed_below: f32,
-    unused: u32,
+    // References of this round: the first one, and the one after the last with which a tile may begin.
+    first: u32,
+    end: u32,
+    // References of all rounds.
+    covered: u32,
+    unused_0: u32,
+    unused_1: u32,
     // Of each section: its first segment, its first vertex, its strands.
     layouts: array<vec4<u32>, MAX_SECTIONS>,
 }

@@ -56,11 +56,11 @@ pub(crate) struct Kernels {
     points: Pass<(BufferId, u32)>,
     /// By the scene.
     depth: Pass<TextureId>,
-    /// By whether it stores.
-    bin: Pass<bool>,
+    /// By the round that it stores, or none.
+    bin: Pass<Option<u32>>,
     alloc: Pass<()>,
-    /// By the scene.
-    blend: Pass<TextureId>,
+    /// By the scene and the round.
+    blend: Pass<(TextureId, u32)>,
 }
 
 impl Kernels {
@@ -140,25 +140,26 @@ impl Kernels {
         self.depth.record(list, (view.index, scene_depth), grid, &resources)
     }
 
-    /// The references of each bin: counted, or stored.
+    /// The references of each bin: counted, or stored in a round.
     pub(crate) fn bin(
         &mut self,
         list: &mut PassList,
         view: &BoundView,
         memory: &Memory,
         segments: u32,
-        stores: bool,
+        round: Option<u32>,
     ) -> Result<()> {
         let resources = [
             ("view", view.uniform),
-            ("tiles", memory.uniforms.binding(2 * view.index + usize::from(stores))),
+            ("tiles", memory.uniform(view.index, round)),
             ("points", memory.vertices.points.into()),
             ("depths", memory.screen.depths.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
             ("nearests", memory.screen.nearests.into()),
+            ("firsts", memory.screen.firsts.into()),
         ];
-        self.bin.record(list, (view.index, stores), Grid::for_threads(segments, GROUP), &resources)
+        self.bin.record(list, (view.index, round), Grid::for_threads(segments, GROUP), &resources)
     }
 
     /// Places for the references, and the queue of tiles.
@@ -170,23 +171,25 @@ impl Kernels {
             ("hairy", memory.screen.resolved.tiles.into()),
             ("tile_vertices", memory.screen.resolved.draw.into()),
             ("groups_of_tiles", memory.groups.into()),
+            ("firsts", memory.screen.firsts.into()),
             ("nearests", memory.screen.nearests.into()),
         ];
         let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
         self.alloc.record(list, (view.index, ()), grid, &resources)
     }
 
-    /// The pixels.
+    /// The pixels of the tiles of a round.
     pub(crate) fn blend(
         &mut self,
         list: &mut PassList,
         view: &BoundView,
         memory: &Memory,
         scene_depth: TextureId,
+        round: u32,
     ) -> Result<()> {
         let resources = [
             ("view", view.uniform),
-            ("tiles", memory.uniforms.binding(2 * view.index + 1)),
+            ("tiles", memory.uniform(view.index, Some(round))),
             ("points", memory.vertices.points.into()),
             ("paints", memory.vertices.paints.into()),
             ("counters", memory.counters.of(view.index).into()),
@@ -196,7 +199,8 @@ impl Kernels {
             ("references", memory.references.buffer.into()),
             ("resolved", memory.screen.resolved.colors.into()),
         ];
-        let bindings = self.blend.bound.get((view.index, scene_depth), || self.blend.kernel.bind(&resources))?;
+        let bindings =
+            self.blend.bound.get((view.index, (scene_depth, round)), || self.blend.kernel.bind(&resources))?;
         list.compute_indirect(&self.blend.kernel, &bindings, memory.groups, 0);
         Ok(())
     }

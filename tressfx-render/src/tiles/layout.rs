@@ -5,6 +5,7 @@ use tressfx_core::gpu_struct;
 use tressfx_core::view::View;
 
 use super::TilesDesc;
+use super::memory::References;
 use crate::strands::SectionDraw;
 
 /// Sections that can be drawn together.
@@ -37,8 +38,16 @@ gpu_struct! {
         pub depth: f32,
         /// Transmittance of a pixel below which nothing more is seen.
         pub closed_below: f32,
+        /// The first reference of the round.
+        pub first: u32,
+        /// The one after the last with which a tile may begin in this round.
+        pub end: u32,
+        /// References of all rounds.
+        pub covered: u32,
         /// Nothing.
-        pub unused: u32,
+        pub unused_0: u32,
+        /// Nothing.
+        pub unused_1: u32,
         /// Of each section: its first segment, its first vertex, its strands, nothing.
         pub layouts: [[u32; 4]; MAX_SECTIONS],
     }
@@ -84,27 +93,32 @@ impl Layout {
         Ok(Self { segments: segment, vertices, first_vertices, sections })
     }
 
-    /// What the kernels are given: for counting and for storing.
+    /// What the kernels are given: for counting, and for storing in each round.
     pub(crate) fn uniforms(
         &self,
         view: &View,
         draws: &[SectionDraw],
         desc: &TilesDesc,
-        capacity: u32,
-    ) -> [TilesUniform; 2] {
+        references: &References,
+    ) -> Vec<TilesUniform> {
         let [nearest, farthest] = distances(view, draws);
-        let uniform = |stores| TilesUniform {
+        let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
             segments: self.segments,
             sections: draws.len() as u32,
-            capacity,
+            capacity: references.count,
             stores,
             nearest,
             depth: farthest - nearest,
             closed_below: desc.closed_below,
-            unused: 0,
+            first,
+            end,
+            covered: references.covered(),
+            unused_0: 0,
+            unused_1: 0,
             layouts: self.sections,
         };
-        [uniform(0), uniform(1)]
+        let rounds = (0..references.rounds).map(|round| uniform(1, references.round(round)));
+        std::iter::once(uniform(0, [0, u32::MAX])).chain(rounds).collect()
     }
 }
 

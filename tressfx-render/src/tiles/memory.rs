@@ -4,6 +4,7 @@ use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
 use super::TilesDesc;
@@ -17,6 +18,12 @@ const CLASSES: u64 = 8;
 
 /// Bytes of the queue before its tiles.
 const QUEUE_HEADER: u64 = 16 + 4 * CLASSES;
+
+/// [`TilesUniform`] of a view, at most: for counting, and for each round.
+pub(crate) const UNIFORMS_OF_A_VIEW: usize = 1 + MAX_ROUNDS as usize;
+
+/// Rounds in which tiles may be blended.
+pub(crate) const MAX_ROUNDS: u32 = 64;
 
 /// Bytes of a grid of groups.
 const GROUPS_BYTES: u64 = 12;
@@ -48,14 +55,35 @@ pub(crate) struct References {
     pub(crate) buffer: BufferId,
     /// How many there is room for.
     pub(crate) count: u32,
+    /// In how many rounds tiles are blended, where there is no room for the references of all of them at once.
+    pub(crate) rounds: u32,
 }
 
 impl References {
     const BYTES: u64 = 4;
 
+    /// How many references all rounds have room for. In a round, tiles begin in the first half of the room, so that the last one of them
+    /// has the other half for itself.
+    pub(crate) fn covered(&self) -> u32 {
+        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.window()) }
+    }
+
+    /// The first reference of a round, and the one after the last with which a tile may begin.
+    pub(crate) fn round(&self, round: u32) -> [u32; 2] {
+        if self.rounds == 1 {
+            [0, u32::MAX]
+        } else {
+            [round, round + 1].map(|round| round.saturating_mul(self.window()))
+        }
+    }
+
+    fn window(&self) -> u32 {
+        (self.count / 2).max(1)
+    }
+
     fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
         let buffer = storage(backend, "hair.render.references", Self::BYTES * u64::from(count))?;
-        Ok(Self { buffer, count })
+        Ok(Self { buffer, count, rounds: 1 })
     }
 }
 
@@ -69,6 +97,8 @@ pub(crate) struct Screen {
     pub(crate) depths: BufferId,
     /// `f32` a tile: the nearness of its nearest vertex.
     pub(crate) nearests: BufferId,
+    /// `u32` a tile: its first reference.
+    pub(crate) firsts: BufferId,
     /// Tiles that have references.
     pub(crate) queue: BufferId,
     /// The colours of the pixels.
@@ -83,6 +113,7 @@ impl Screen {
             bins: storage(backend, "hair.render.bins", bins)?,
             depths: storage(backend, "hair.render.tile_depths", depths)?,
             nearests: storage(backend, "hair.render.nearests", depths)?,
+            firsts: storage(backend, "hair.render.firsts", depths)?,
             queue: storage(backend, "hair.render.queue", queue)?,
             resolved: Resolved::new(backend, size)?,
         })
@@ -90,13 +121,13 @@ impl Screen {
 
     fn destroy(self, backend: &mut dyn Backend) {
         self.resolved.destroy(backend);
-        [self.bins, self.depths, self.nearests, self.queue]
+        [self.bins, self.depths, self.nearests, self.firsts, self.queue]
             .into_iter()
             .for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
-/// Bytes of bins, depths, which are as many as nearests, and queue.
+/// Bytes of bins, depths, which are as many as nearests and firsts, and queue.
 fn sizes(size: [u32; 2]) -> [u64; 3] {
     let tiles = u64::from(tile_count(size));
     [4 * u64::from(SLICES) * tiles, 4 * tiles, QUEUE_HEADER + 16 * CLASSES * tiles]
@@ -135,7 +166,7 @@ impl Memory {
             screen: Screen::new(backend, size)?,
             groups: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_groups", GROUPS_BYTES))?,
             counters: ViewCounters::new(backend)?,
-            uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", 2 * MAX_VIEWS)?,
+            uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", MAX_VIEWS * UNIFORMS_OF_A_VIEW)?,
         })
     }
 
@@ -145,12 +176,18 @@ impl Memory {
         Ok(())
     }
 
-    /// Makes room for `wanted` references, or for as many as are allowed.
+    /// Makes room for `wanted` references, and for more than are allowed in rounds.
     pub(crate) fn grow_references(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
         let count = wanted.min(u64::from(self.most_references)) as u32;
         if count > self.references.count {
             let grown = References::new(backend, count)?;
-            backend.destroy(std::mem::replace(&mut self.references, grown).buffer.into());
+            let old = std::mem::replace(&mut self.references, grown);
+            self.references.rounds = old.rounds;
+            backend.destroy(old.buffer.into());
+        }
+        if wanted > u64::from(self.references.covered()) {
+            let rounds = wanted.div_ceil(u64::from(self.references.window())).min(u64::from(MAX_ROUNDS)) as u32;
+            self.references.rounds = self.references.rounds.max(rounds);
         }
         Ok(())
     }
@@ -167,12 +204,17 @@ impl Memory {
 
     pub(crate) fn bytes(&self) -> u64 {
         sizes(self.screen.size).iter().sum::<u64>()
-            + sizes(self.screen.size)[1]
+            + 2 * sizes(self.screen.size)[1]
             + Resolved::bytes(self.screen.size)
             + Vertices::BYTES * self.vertices.count
             + References::BYTES * u64::from(self.references.count)
             + GROUPS_BYTES
             + ViewCounters::BYTES
+    }
+
+    /// What the kernels of a view are given: for counting, or for a round.
+    pub(crate) fn uniform(&self, view: usize, round: Option<u32>) -> Binding {
+        self.uniforms.binding(view * UNIFORMS_OF_A_VIEW + round.map_or(0, |round| 1 + round as usize))
     }
 
     /// Empties bins, nearests and the queue for a view of this size.
