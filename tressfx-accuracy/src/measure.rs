@@ -1,4 +1,5 @@
-//! The measurement: what is there from an interrupted run is not done again.
+//! The measurement. What an interrupted run has measured is not measured again; a run that comes to its end leaves only the pictures
+//! of the reference renderer to the next one.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +22,7 @@ pub(crate) struct Measure {
     fresh: bool,
 }
 
-/// A row of an earlier run, and what it was measured with.
+/// A row of an interrupted run, and what it was measured with.
 #[derive(Deserialize, Serialize)]
 struct Kept {
     program: String,
@@ -43,7 +44,7 @@ impl Measure {
         let style = "{bar:40} {pos} of {len}, {eta} left: {msg}";
         let bar = ProgressBar::new((there.len() * methods.len() * backends.len()) as u64)
             .with_style(ProgressStyle::with_template(style).expect("the template is fixed"));
-        let mut rows = Vec::new();
+        let (mut rows, mut kept) = (Vec::new(), Vec::new());
         for scene in there {
             bar.set_message(format!("{}, reference", scene.name));
             let groom = scene.groom.as_deref().unwrap_or_default();
@@ -52,11 +53,14 @@ impl Measure {
             let reference = self.reference(&folder, &words, backends[0])?;
             for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
                 bar.set_message(format!("{}, {}, {backend}", scene.name, method.name));
-                rows.push(self.row(scene, method, backend, &words, &folder, &reference)?);
+                let picture = folder.join(format!("{}-{backend}.png", method.name));
+                rows.push(self.row(scene, method, backend, &words, &picture, &reference)?);
+                kept.push(picture.with_extension("json"));
                 bar.inc(1);
             }
         }
         bar.finish_and_clear();
+        kept.iter().try_for_each(|path| fs::remove_file(path).with_context(|| path.display().to_string()))?;
         Ok(rows)
     }
 
@@ -97,10 +101,9 @@ impl Measure {
         method: &Method,
         backend: &str,
         words: &[String],
-        folder: &Path,
+        picture: &Path,
         reference: &Path,
     ) -> Result<Row> {
-        let picture = folder.join(format!("{}-{backend}.png", method.name));
         let kept = picture.with_extension("json");
         let words = [words, &method.words, &["--backend".to_owned(), backend.to_owned()]].concat();
         let program = &self.program.stamp;
@@ -108,8 +111,8 @@ impl Measure {
         if let Some(earlier) = earlier.filter(|kept| (&kept.program, &kept.words) == (program, &words) && !self.fresh) {
             return Ok(earlier.row);
         }
-        let stats = self.program.measure(&words, &picture)?;
-        let comparison = self.program.compare(&picture, reference)?;
+        let stats = self.program.measure(&words, picture)?;
+        let comparison = self.program.compare(picture, reference)?;
         let row = Row {
             scene: scene.name.clone(),
             method: method.name.clone(),
@@ -152,6 +155,7 @@ case $1 in
 info) echo '[{"bounds": {"min": [0, 0, 0], "max": [1, 1, 1]}}]' ;;
 compare) echo '{"flip_mean": 0.25, "psnr_db": null, "max_difference": 9, "differing_share": 0.5}' ;;
 render)
+    case "$*" in *"--oit-k 4 "*) [ -e "$(dirname "$0")/broken" ] && echo "the device is lost" >&2 && exit 1 ;; esac
     while [ $# -gt 0 ]; do
         case $1 in
         --out) echo picture > "$2" ;;
@@ -165,35 +169,63 @@ render)
 esac
 "#;
 
-    #[test]
-    fn what_is_measured_is_not_measured_again_until_the_program_changes() {
-        let folder = std::env::temp_dir().join(format!("tressfx-accuracy-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        let program = folder.join("tressfx");
-        let write = |text: &str| {
-            fs::write(&program, text).unwrap();
-            fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-        };
-        let (scene, methods) = (&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2]);
-        let all = |fresh| {
-            let program = Program::new(&program).unwrap();
-            let measure = Measure::new(program, &folder.join("work"), Extent::Quick.setting(), fresh);
-            let rows = measure.all(scene, methods, &["wgpu"]).unwrap();
-            let asked = fs::read_to_string(folder.join("asked.txt")).unwrap();
-            fs::remove_file(folder.join("asked.txt")).unwrap();
+    /// A folder with a program in it.
+    struct Rig(PathBuf);
+
+    impl Rig {
+        fn new() -> Self {
+            let folder = std::env::temp_dir().join(format!("tressfx-accuracy-{}", std::process::id()));
+            fs::create_dir_all(&folder).unwrap();
+            Self(folder)
+        }
+
+        fn build(&self, text: &str) {
+            fs::write(self.0.join("tressfx"), text).unwrap();
+            fs::set_permissions(self.0.join("tressfx"), fs::Permissions::from_mode(0o755)).unwrap();
+        }
+
+        /// Two methods on one scene, and how often a reference and a measurement were asked for.
+        fn measure(&self, fresh: bool) -> (Result<Vec<Row>>, usize, usize) {
+            let program = Program::new(&self.0.join("tressfx")).unwrap();
+            let measure = Measure::new(program, &self.0.join("work"), Extent::Quick.setting(), fresh);
+            let rows = measure.all(&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2], &["wgpu"]);
+            let asked = fs::read_to_string(self.0.join("asked.txt")).unwrap();
+            fs::remove_file(self.0.join("asked.txt")).unwrap();
             let count = |word: &str| asked.lines().filter(|line| line.contains(word)).count();
             (rows, count("--reference"), count("--stats"))
-        };
-        write(ANSWERS);
-        let (rows, references, measured) = all(false);
-        assert_eq!((references, measured), (1, 2));
+        }
+    }
+
+    impl Drop for Rig {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn an_interrupted_run_goes_on_and_any_other_measures_anew() {
+        let rig = Rig::new();
+        rig.build(ANSWERS);
+        fs::write(rig.0.join("broken"), "").unwrap();
+        let (error, references, measured) = rig.measure(false);
+        assert!(error.unwrap_err().to_string().contains("the device is lost"));
+        assert_eq!((references, measured), (1, 2), "the second one failed");
+        fs::remove_file(rig.0.join("broken")).unwrap();
+        let (rows, references, measured) = rig.measure(false);
+        assert_eq!((references, measured), (0, 1));
+        let rows = rows.unwrap();
         assert_eq!((rows[0].flip, rows[0].psnr_db, rows[0].largest, rows[0].ms()), (0.25, None, 9, Some(1.0)));
         assert_eq!((rows[1].fragments, rows[1].dropped, rows[1].bytes), (7, 1, 5));
-        let (again, references, measured) = all(false);
-        assert_eq!((&again, references, measured), (&rows, 0, 0));
-        write(&format!("{ANSWERS}\n# built anew"));
-        assert_eq!(all(false), (rows.clone(), 0, 2));
-        assert_eq!(all(true), (rows, 1, 2));
-        fs::remove_dir_all(folder).unwrap();
+        let (again, references, measured) = rig.measure(false);
+        assert_eq!((again.unwrap(), references, measured), (rows.clone(), 0, 2), "it had come to its end");
+        let (again, references, measured) = rig.measure(true);
+        assert_eq!((again.unwrap(), references, measured), (rows, 1, 2));
+        // What another program has measured is measured again.
+        fs::write(rig.0.join("broken"), "").unwrap();
+        assert!(rig.measure(false).0.is_err());
+        fs::remove_file(rig.0.join("broken")).unwrap();
+        rig.build(&format!("{ANSWERS}\n# built anew"));
+        let (rows, references, measured) = rig.measure(false);
+        assert_eq!((rows.unwrap().len(), references, measured), (2, 0, 2));
     }
 }

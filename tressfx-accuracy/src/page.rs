@@ -24,7 +24,7 @@ fn page(run: &Run, extent: Extent) -> String {
          of each pass.\n\
          `cargo xtask accuracy{quick} --check` measures again and fails where an error has grown by more than 10 %.\n\n\
          Each picture is compared with that of the reference renderer (`tressfx render --reference`), which traces fibres as \
-         solids with {} rays a pixel, at {width}x{height} after {} frames. FLIP, PSNR and the largest difference (of 255) are of \
+         solids with {} rays a pixel, at {width}x{height}; frames simulated: {}. FLIP, PSNR and the largest difference (of 255) are of \
          the whole picture, with its backdrop. A part of each error is the sampling of the reference, the same for all methods of \
          a scene.\n\n",
         run.setting.samples, run.setting.frames
@@ -44,7 +44,8 @@ fn devices(run: &Run) -> String {
         false => format!("* {backend}: times were taken on {adapter}.\n"),
         true => format!(
             "* {backend}: times were taken on {adapter}, which is **a CPU that plays a GPU**. They say nothing of the times on a \
-             GPU, nor of their order.\n"
+             GPU, nor of their order. Mesa's ends a shader after 65,535 rounds of its loops, so that rows of pixels may be missing \
+             where much hair lies in one tile.\n"
         ),
     };
     devices.into_iter().map(of).collect()

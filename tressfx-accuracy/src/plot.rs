@@ -10,11 +10,16 @@ use plotters::prelude::*;
 use crate::figures::{Row, Run};
 use crate::method::{FAMILIES, family_of};
 
-const SIZE: (u32, u32) = (860, 520);
+const SIZE: (u32, u32) = (940, 480);
+/// Where the legend begins: beside the plot, since points may lie anywhere in it.
+const LEGEND: i32 = 690;
 
 /// A colour a family; these are told apart by people who see few colours too (Okabe and Ito).
 const COLORS: [RGBColor; FAMILIES.len()] =
     [RGBColor(0, 114, 178), RGBColor(86, 180, 233), RGBColor(213, 94, 0), RGBColor(230, 159, 0), RGBColor(0, 158, 115)];
+
+/// Of the line along the best ones.
+const FRONT: RGBColor = RGBColor(200, 200, 200);
 
 /// A row in the plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,13 +85,14 @@ type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn {
     let area: Area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
+    let (plot, legend) = area.split_horizontally(LEGEND);
     let fold = |of: &dyn Fn(&Point) -> f64, least: bool| {
         let pick = if least { f64::min } else { f64::max };
         points.iter().map(of).reduce(pick).unwrap_or(1.0)
     };
     let times = fold(&|point| point.ms, true) * 0.8..fold(&|point| point.ms, false) * 1.25;
     let errors = 0.0..(fold(&|point| point.flip, false) * 1.12).max(1e-6);
-    let mut chart = ChartBuilder::on(&area)
+    let mut chart = ChartBuilder::on(&plot)
         .caption(scene, ("sans-serif", 22))
         .margin(14)
         .x_label_area_size(48)
@@ -103,11 +109,22 @@ fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn 
     for (family, (of, color)) in FAMILIES.iter().zip(COLORS).enumerate() {
         let own: Vec<_> = points.iter().filter(|point| point.family == family).copied().collect();
         if !own.is_empty() {
-            draw_family(&mut chart, of.name, color, &own)?;
+            draw_family(&mut chart, color, &own)?;
+            draw_legend(&legend, family as i32 + 1, of.name, color)?;
         }
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK.mix(0.4)).draw()?;
+    draw_legend(&legend, 0, "none is faster and more exact", FRONT)?;
     area.present()
+}
+
+/// One row of the legend: a dot for a family, a line for the best ones.
+fn draw_legend(legend: &Area, row: i32, name: &str, color: RGBColor) -> Drawn {
+    let y = 60 + 22 * row;
+    match row {
+        0 => legend.draw(&PathElement::new([(4, y), (24, y)], color.stroke_width(6)))?,
+        _ => legend.draw(&Circle::new((14, y), 5, color.filled()))?,
+    }
+    legend.draw(&Text::new(name.to_owned(), (32, y - 7), ("sans-serif", 13)))
 }
 
 /// Steps along the points that no other one beats.
@@ -115,19 +132,13 @@ fn draw_front(chart: &mut Chart, points: &[Point]) -> Drawn {
     let front = front(points);
     let steps = front.windows(2).flat_map(|pair| [(pair[1].ms, pair[0].flip), (pair[1].ms, pair[1].flip)]);
     let line = front.first().map(|first| (first.ms, first.flip)).into_iter().chain(steps);
-    chart
-        .draw_series(LineSeries::new(line, BLACK.mix(0.25).stroke_width(6)))?
-        .label("none is faster and more exact")
-        .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], BLACK.mix(0.25).stroke_width(6)));
+    chart.draw_series(LineSeries::new(line, FRONT.stroke_width(6)))?;
     Ok(())
 }
 
-fn draw_family(chart: &mut Chart, name: &'static str, color: RGBColor, points: &[Point]) -> Drawn {
+fn draw_family(chart: &mut Chart, color: RGBColor, points: &[Point]) -> Drawn {
     let style = |is_hollow: bool| if is_hollow { color.stroke_width(2) } else { color.filled() };
-    chart
-        .draw_series(points.iter().map(|point| Circle::new((point.ms, point.flip), 5, style(point.is_hollow))))?
-        .label(name)
-        .legend(move |(x, y)| Circle::new((x + 8, y), 5, color.filled()));
+    chart.draw_series(points.iter().map(|point| Circle::new((point.ms, point.flip), 5, style(point.is_hollow))))?;
     chart.draw_series(points.iter().map(|point| {
         let at = EmptyElement::at((point.ms, point.flip));
         at + Text::new(point.setting.to_owned(), (7, -14), ("sans-serif", 13).into_font().color(&color))

@@ -48,7 +48,7 @@ const GROOMS: [(&str, &str, bool); 6] = [
 
 /// In a quick run each groom is seen from one distance, and the dense one has fewer strands.
 const QUICK: [(&str, Place); 6] =
-    [("curly", NEAR), ("fur", MIDDLE), ("long", FAR), ("dense", MIDDLE), ("mohawk", MIDDLE), ("sintel", NEAR)];
+    [("curly", NEAR), ("fur", FAR), ("long", MIDDLE), ("dense", NEAR), ("mohawk", FAR), ("sintel", MIDDLE)];
 const QUICK_DENSE: &str = "builtin:long:32768:16";
 
 /// All scenes; those of real grooms have no groom unless TRESSFX_ASSETS names a folder.
