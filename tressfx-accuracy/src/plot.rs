@@ -114,6 +114,9 @@ fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn 
         }
     }
     draw_legend(&legend, 0, "none is faster and more exact", FRONT)?;
+    if points.iter().any(|point| point.is_hollow) {
+        draw_legend(&legend, FAMILIES.len() as i32 + 1, "hollow: raw Vulkan", WHITE)?;
+    }
     area.present()
 }
 
@@ -170,7 +173,7 @@ mod tests {
         for word in ["curly-near", "a GPU", "ppll", "tiles", "FLIP"] {
             assert!(svg.contains(word), "{word}");
         }
-        assert!(!svg.contains("shortcut"), "nothing was measured of it");
+        assert!(!svg.contains("shortcut") && !svg.contains("hollow"), "nothing was measured of it");
         assert!(!is_drawn(&rows[2..]), "what has no time has no place");
     }
 }
