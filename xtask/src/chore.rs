@@ -81,6 +81,23 @@ pub(crate) fn docs() -> Result<(), String> {
     Ok(())
 }
 
+/// Measures error against run time, of the release program unless `--program` names one. What measures is a program of its own:
+/// so xtask has no dependencies, and whoever wants the demo does not build what draws plots.
+pub(crate) fn accuracy(words: &[&str]) -> Result<(), String> {
+    let given = words.iter().position(|word| *word == "--program").and_then(|at| words.get(at + 1));
+    let program = given.map_or_else(|| tressfx("release"), |path| Ok(PathBuf::from(path)))?;
+    if words.iter().all(|word| *word != "--help") {
+        driver::ensure(&program)?;
+    }
+    let mut command = cargo(&["run", "--quiet", "--package", "tressfx-accuracy", "--"]);
+    command.args(words);
+    if given.is_none() {
+        command.arg("--program").arg(program);
+    }
+    command.arg("--docs").arg(root().join("docs").join("accuracy"));
+    run(command.arg("--work").arg(root().join("out").join("accuracy")))
+}
+
 /// Everything that a change must pass.
 pub(crate) fn test() -> Result<(), String> {
     step(&["fmt", "--all", "--check"])?;

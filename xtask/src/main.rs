@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`.
+//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`, `cargo xtask accuracy`.
 
 mod chore;
 mod compilers;
@@ -8,13 +8,16 @@ mod validation;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask demo | test | docs
+const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
   test   formatting, clippy, all tests, and the documentation, each without a warning; installs the validation
          layer of Vulkan and compilers of other shader languages where there are none
-  docs   makes the pictures of README.md and docs/ anew";
+  docs   makes the pictures of README.md and docs/ anew
+  accuracy
+         measures the error of each technique against the reference renderer, and its time, into docs/accuracy; with --check it
+         fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -22,6 +25,7 @@ fn main() -> ExitCode {
         ["demo"] => chore::demo(),
         ["test"] => chore::test(),
         ["docs"] => chore::docs(),
+        ["accuracy", ref words @ ..] => chore::accuracy(words),
         _ => Err(String::from(USAGE)),
     };
     match done {

@@ -1,0 +1,180 @@
+//! What is measured, and the file that keeps it.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    Quick,
+    Full,
+}
+
+impl Extent {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Full => "full",
+        }
+    }
+
+    pub(crate) fn setting(self) -> Setting {
+        match self {
+            Self::Quick => Setting { size: [320, 180], samples: 64, frames: 1 },
+            Self::Full => Setting { size: [1280, 720], samples: 256, frames: 60 },
+        }
+    }
+}
+
+/// What has to be the same for figures to be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Setting {
+    /// Pixels.
+    pub(crate) size: [u32; 2],
+    /// Rays a pixel of the reference renderer.
+    pub(crate) samples: u32,
+    /// Frames that are simulated and drawn; the last one is compared.
+    pub(crate) frames: u32,
+}
+
+/// GPU time of the passes of one label in a frame: the median over the runs of a pass, times its runs in a frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PassTime {
+    pub(crate) label: String,
+    pub(crate) ms: f64,
+}
+
+/// One method on one scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Row {
+    pub(crate) scene: String,
+    pub(crate) method: String,
+    pub(crate) backend: String,
+    /// The device that the times were taken on.
+    pub(crate) adapter: String,
+    /// Mean of FLIP against the reference renderer.
+    pub(crate) flip: f64,
+    /// None for equal pictures.
+    pub(crate) psnr_db: Option<f64>,
+    /// Of any channel, in steps of 8 bits.
+    pub(crate) largest: u8,
+    /// Of the passes that draw hair.
+    pub(crate) passes: Vec<PassTime>,
+    pub(crate) fragments: u64,
+    pub(crate) dropped: u64,
+    /// Of the buffers in which the technique keeps fragments and pixels.
+    pub(crate) bytes: u64,
+}
+
+impl Row {
+    /// Time of a frame's hair in milliseconds; none where the device cannot time passes.
+    pub(crate) fn ms(&self) -> Option<f64> {
+        let sum = self.passes.iter().map(|pass| pass.ms).sum::<f64>();
+        (!self.passes.is_empty()).then_some(sum)
+    }
+
+    /// Root of the mean square error, of 1.
+    pub(crate) fn rms(&self) -> f64 {
+        self.psnr_db.map_or(0.0, |decibels| 10f64.powf(-decibels / 20.0))
+    }
+
+    /// Whether the device is a CPU that plays a GPU.
+    pub(crate) fn is_software(&self) -> bool {
+        ["llvmpipe", "SwiftShader", "lavapipe"].iter().any(|name| self.adapter.contains(name))
+    }
+}
+
+/// All rows that were measured together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Run {
+    pub(crate) setting: Setting,
+    pub(crate) rows: Vec<Row>,
+}
+
+impl Run {
+    /// The scenes, in their order.
+    pub(crate) fn scenes(&self) -> Vec<&str> {
+        let mut scenes: Vec<&str> = self.rows.iter().map(|row| row.scene.as_str()).collect();
+        scenes.dedup();
+        scenes
+    }
+
+    pub(crate) fn of_scene<'a>(&'a self, scene: &'a str) -> impl Iterator<Item = &'a Row> {
+        self.rows.iter().filter(move |row| row.scene == scene)
+    }
+}
+
+/// The whole file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Report {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quick: Option<Run>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    full: Option<Run>,
+}
+
+impl Report {
+    /// An empty one where there is no file.
+    pub(crate) fn read(path: &Path) -> Result<Self> {
+        if !path.exists() {
+            return Ok(Self::default());
+        }
+        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        serde_json::from_str(&text).with_context(|| path.display().to_string())
+    }
+
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
+        let text = serde_json::to_string_pretty(self)? + "\n";
+        std::fs::write(path, text).with_context(|| path.display().to_string())
+    }
+
+    pub(crate) fn run(&mut self, extent: Extent) -> &mut Option<Run> {
+        match extent {
+            Extent::Quick => &mut self.quick,
+            Extent::Full => &mut self.full,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) fn row(method: &str, flip: f64, ms: f64) -> Row {
+        Row {
+            scene: "curly-near".into(),
+            method: method.into(),
+            backend: "wgpu".into(),
+            adapter: "a GPU".into(),
+            flip,
+            psnr_db: Some(40.0),
+            largest: 30,
+            passes: vec![PassTime { label: "hair.render.fill".into(), ms }],
+            fragments: 1000,
+            dropped: 0,
+            bytes: 1 << 20,
+        }
+    }
+
+    #[test]
+    fn figures_survive_their_file() {
+        let path = std::env::temp_dir().join(format!("tressfx-accuracy-{}.json", std::process::id()));
+        let mut report = Report::read(&path).unwrap();
+        assert_eq!(report, Report::default());
+        let rows = vec![Row { psnr_db: None, ..row("tiles", 0.125, 0.5) }, row("ppll", 0.25, 0.75)];
+        *report.run(Extent::Quick) = Some(Run { setting: Extent::Quick.setting(), rows });
+        report.write(&path).unwrap();
+        assert_eq!(Report::read(&path).unwrap(), report);
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn errors_and_times_of_a_row() {
+        let row = row("ppll", 0.25, 0.75);
+        assert!((row.rms() - 0.01).abs() < 1e-12 && row.ms() == Some(0.75));
+        assert!(Row { psnr_db: None, ..row.clone() }.rms() == 0.0);
+        assert!(Row { passes: Vec::new(), ..row }.ms().is_none());
+    }
+}

@@ -1,0 +1,91 @@
+//! Error against run time: techniques and their settings over scenes, each held against the reference renderer.
+//!
+//! It runs the program `tressfx`, links none of the other crates, and writes `accuracy.json`, `README.md` and a plot of each
+//! scene. It is a program of its own, so that nobody who only wants to build and test waits for what draws plots.
+
+mod check;
+mod figures;
+mod measure;
+mod method;
+mod page;
+mod plot;
+mod program;
+mod scene;
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::{Parser, ValueEnum};
+
+use crate::figures::{Extent, Report, Run};
+use crate::measure::Measure;
+use crate::program::Program;
+
+/// Measure the error and the run time of the techniques
+#[derive(Debug, Parser)]
+#[command(name = "accuracy", version)]
+struct Args {
+    /// Write nothing: hold the errors against those of accuracy.json, and fail where one has grown by more than 10 %
+    #[arg(long)]
+    check: bool,
+    /// Fewer scenes and settings, in small pictures
+    #[arg(long)]
+    quick: bool,
+    /// What runs the passes
+    #[arg(long, value_enum, default_value_t = Device::Wgpu)]
+    device: Device,
+    /// Draw the pictures of the reference renderer anew: for when the look of the scenes has changed
+    #[arg(long)]
+    fresh: bool,
+    /// The program `tressfx` that is measured
+    #[arg(long, value_name = "FILE")]
+    program: PathBuf,
+    /// The folder with accuracy.json
+    #[arg(long, value_name = "DIR")]
+    docs: PathBuf,
+    /// The folder for pictures and for what an interrupted run has measured
+    #[arg(long, value_name = "DIR")]
+    work: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Device {
+    Wgpu,
+    Vulkan,
+    Both,
+}
+
+impl Device {
+    /// As `tressfx --backend` takes them.
+    fn backends(self) -> &'static [&'static str] {
+        match self {
+            Self::Wgpu => &["wgpu"],
+            Self::Vulkan => &["vulkan"],
+            Self::Both => &["wgpu", "vulkan"],
+        }
+    }
+}
+
+fn main() -> Result<()> {
+    let args = Args::parse();
+    let extent = if args.quick { Extent::Quick } else { Extent::Full };
+    let path = args.docs.join("accuracy.json");
+    let mut report = Report::read(&path)?;
+    let stored = report.run(extent).take();
+    if args.check && stored.is_none() {
+        bail!("{}: it holds no {} run to check against", path.display(), extent.name());
+    }
+    let measure = Measure::new(Program::new(&args.program)?, &args.work, extent.setting(), args.fresh);
+    let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;
+    let run = Run { setting: extent.setting(), rows };
+    if let Some(stored) = stored.filter(|_| args.check) {
+        return check::check(&stored, &run);
+    }
+    std::fs::create_dir_all(&args.docs).with_context(|| args.docs.display().to_string())?;
+    plot::write(&run, &args.docs)?;
+    page::write(&run, extent, &args.docs)?;
+    *report.run(extent) = Some(run);
+    report.write(&path)?;
+    println!("The figures are in {}", args.docs.display());
+    Ok(())
+}

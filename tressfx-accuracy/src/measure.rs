@@ -1,0 +1,231 @@
+//! The measurement. What an interrupted run has measured is not measured again; a run that comes to its end leaves only the pictures
+//! of the reference renderer to the next one.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::{Deserialize, Serialize};
+
+use crate::figures::{PassTime, Row, Setting};
+use crate::method::Method;
+use crate::program::{Program, Stats};
+use crate::scene::Scene;
+
+/// What is measured with, and where pictures and rows are kept.
+#[derive(Debug)]
+pub(crate) struct Measure {
+    program: Program,
+    work: PathBuf,
+    setting: Setting,
+    fresh: bool,
+}
+
+/// A row of an interrupted run, and what it was measured with.
+#[derive(Deserialize, Serialize)]
+struct Kept {
+    program: String,
+    words: Vec<String>,
+    row: Row,
+}
+
+impl Measure {
+    pub(crate) fn new(program: Program, work: &Path, setting: Setting, fresh: bool) -> Self {
+        Self { program, work: work.to_owned(), setting, fresh }
+    }
+
+    /// Every method on every scene whose groom is there, on every backend.
+    pub(crate) fn all(&self, scenes: &[Scene], methods: &[Method], backends: &[&str]) -> Result<Vec<Row>> {
+        let (there, missing): (Vec<_>, Vec<_>) = scenes.iter().partition(|scene| scene.groom.is_some());
+        for scene in missing {
+            eprintln!("skipped: {}: TRESSFX_ASSETS is not set", scene.name);
+        }
+        let style = "{bar:40} {pos} of {len}, {eta} left: {msg}";
+        let bar = ProgressBar::new((there.len() * methods.len() * backends.len()) as u64)
+            .with_style(ProgressStyle::with_template(style).expect("the template is fixed"));
+        let (mut rows, mut kept) = (Vec::new(), Vec::new());
+        for scene in there {
+            bar.set_message(format!("{}, reference", scene.name));
+            let groom = scene.groom.as_deref().unwrap_or_default();
+            let words = self.words(groom, &scene.camera(&self.program.bounds(groom)?));
+            let folder = self.folder(scene)?;
+            let reference = self.reference(&folder, &words, backends[0])?;
+            for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
+                bar.set_message(format!("{}, {}, {backend}", scene.name, method.name));
+                let picture = folder.join(format!("{}-{backend}.png", method.name));
+                rows.push(self.row(scene, method, backend, &words, &picture, &reference)?);
+                kept.push(picture.with_extension("json"));
+                bar.inc(1);
+            }
+        }
+        bar.finish_and_clear();
+        kept.iter().try_for_each(|path| fs::remove_file(path).with_context(|| path.display().to_string()))?;
+        Ok(rows)
+    }
+
+    /// What all pictures of a scene have in common.
+    fn words(&self, groom: &str, camera: &str) -> Vec<String> {
+        let Setting { size, frames, .. } = self.setting;
+        let size = format!("{}x{}", size[0], size[1]);
+        let frames = frames.to_string();
+        [groom, "--camera", camera, "--size", &size, "--frames", &frames].map(str::to_owned).to_vec()
+    }
+
+    fn folder(&self, scene: &Scene) -> Result<PathBuf> {
+        let Setting { size, samples, frames } = self.setting;
+        let folder = self.work.join(format!("{}x{}-{samples}-{frames}", size[0], size[1])).join(&scene.name);
+        fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+        Ok(folder)
+    }
+
+    /// The picture of the reference renderer. It is drawn under another name first: what has its name is whole.
+    fn reference(&self, folder: &Path, words: &[String], backend: &str) -> Result<PathBuf> {
+        let (picture, drawn_with) = (folder.join("reference.png"), folder.join("reference.txt"));
+        let typed = words.join(" ");
+        let is_there = picture.exists() && fs::read_to_string(&drawn_with).is_ok_and(|text| text == typed);
+        if is_there && !self.fresh {
+            return Ok(picture);
+        }
+        let part = folder.join("reference.part.png");
+        let more = ["--reference", "--samples", &self.setting.samples.to_string(), "--backend", backend];
+        self.program.render(&[words, &more.map(str::to_owned)].concat(), &part)?;
+        fs::rename(&part, &picture).with_context(|| picture.display().to_string())?;
+        fs::write(&drawn_with, typed).with_context(|| drawn_with.display().to_string())?;
+        Ok(picture)
+    }
+
+    fn row(
+        &self,
+        scene: &Scene,
+        method: &Method,
+        backend: &str,
+        words: &[String],
+        picture: &Path,
+        reference: &Path,
+    ) -> Result<Row> {
+        let kept = picture.with_extension("json");
+        let words = [words, &method.words, &["--backend".to_owned(), backend.to_owned()]].concat();
+        let program = &self.program.stamp;
+        let earlier = fs::read_to_string(&kept).ok().and_then(|text| serde_json::from_str::<Kept>(&text).ok());
+        if let Some(earlier) = earlier.filter(|kept| (&kept.program, &kept.words) == (program, &words) && !self.fresh) {
+            return Ok(earlier.row);
+        }
+        let stats = self.program.measure(&words, picture)?;
+        let comparison = self.program.compare(picture, reference)?;
+        let row = Row {
+            scene: scene.name.clone(),
+            method: method.name.clone(),
+            flip: comparison.flip_mean,
+            psnr_db: comparison.psnr_db,
+            largest: comparison.max_difference,
+            passes: passes(&stats),
+            fragments: stats.render.fragments,
+            dropped: stats.render.dropped,
+            bytes: stats.render.oit_bytes,
+            backend: stats.backend,
+            adapter: stats.adapter,
+        };
+        let text = serde_json::to_string(&Kept { program: program.clone(), words, row: row.clone() })?;
+        fs::write(&kept, text).with_context(|| kept.display().to_string())?;
+        Ok(row)
+    }
+}
+
+/// Of the passes that draw hair.
+fn passes(stats: &Stats) -> Vec<PassTime> {
+    let of_hair = stats.passes.iter().filter(|pass| pass.label.starts_with("hair.render."));
+    let in_a_frame = |runs: u32| (f64::from(runs) / f64::from(stats.frames.max(1))).round();
+    of_hair.map(|pass| PassTime { label: pass.label.clone(), ms: pass.median_ms * in_a_frame(pass.runs) }).collect()
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::PermissionsExt;
+
+    use super::*;
+    use crate::figures::Extent;
+    use crate::method::methods;
+    use crate::scene::scenes;
+
+    /// Notes what it is asked for, and answers as `tressfx` does.
+    const ANSWERS: &str = r#"#!/bin/sh
+echo "$*" >> "$(dirname "$0")/asked.txt"
+case $1 in
+info) echo '[{"bounds": {"min": [0, 0, 0], "max": [1, 1, 1]}}]' ;;
+compare) echo '{"flip_mean": 0.25, "psnr_db": null, "max_difference": 9, "differing_share": 0.5}' ;;
+render)
+    case "$*" in *"--oit-k 4 "*) [ -e "$(dirname "$0")/broken" ] && echo "the device is lost" >&2 && exit 1 ;; esac
+    while [ $# -gt 0 ]; do
+        case $1 in
+        --out) echo picture > "$2" ;;
+        --stats) echo '{"backend": "wgpu", "adapter": "none", "frames": 2,
+            "passes": [{"label": "hair.render.tile_bin", "median_ms": 0.5, "runs": 4},
+                       {"label": "hair.sim.integrate", "median_ms": 9, "runs": 2}],
+            "render": {"fragments": 7, "dropped": 1, "oit_bytes": 5}}' > "$2" ;;
+        esac
+        shift
+    done ;;
+esac
+"#;
+
+    /// A folder with a program in it.
+    struct Rig(PathBuf);
+
+    impl Rig {
+        fn new() -> Self {
+            let folder = std::env::temp_dir().join(format!("tressfx-accuracy-{}", std::process::id()));
+            fs::create_dir_all(&folder).unwrap();
+            Self(folder)
+        }
+
+        fn build(&self, text: &str) {
+            fs::write(self.0.join("tressfx"), text).unwrap();
+            fs::set_permissions(self.0.join("tressfx"), fs::Permissions::from_mode(0o755)).unwrap();
+        }
+
+        /// Two methods on one scene, and how often a reference and a measurement were asked for.
+        fn measure(&self, fresh: bool) -> (Result<Vec<Row>>, usize, usize) {
+            let program = Program::new(&self.0.join("tressfx")).unwrap();
+            let measure = Measure::new(program, &self.0.join("work"), Extent::Quick.setting(), fresh);
+            let rows = measure.all(&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2], &["wgpu"]);
+            let asked = fs::read_to_string(self.0.join("asked.txt")).unwrap();
+            fs::remove_file(self.0.join("asked.txt")).unwrap();
+            let count = |word: &str| asked.lines().filter(|line| line.contains(word)).count();
+            (rows, count("--reference"), count("--stats"))
+        }
+    }
+
+    impl Drop for Rig {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn an_interrupted_run_goes_on_and_any_other_measures_anew() {
+        let rig = Rig::new();
+        rig.build(ANSWERS);
+        fs::write(rig.0.join("broken"), "").unwrap();
+        let (error, references, measured) = rig.measure(false);
+        assert!(error.unwrap_err().to_string().contains("the device is lost"));
+        assert_eq!((references, measured), (1, 2), "the second one failed");
+        fs::remove_file(rig.0.join("broken")).unwrap();
+        let (rows, references, measured) = rig.measure(false);
+        assert_eq!((references, measured), (0, 1));
+        let rows = rows.unwrap();
+        assert_eq!((rows[0].flip, rows[0].psnr_db, rows[0].largest, rows[0].ms()), (0.25, None, 9, Some(1.0)));
+        assert_eq!((rows[1].fragments, rows[1].dropped, rows[1].bytes), (7, 1, 5));
+        let (again, references, measured) = rig.measure(false);
+        assert_eq!((again.unwrap(), references, measured), (rows.clone(), 0, 2), "it had come to its end");
+        let (again, references, measured) = rig.measure(true);
+        assert_eq!((again.unwrap(), references, measured), (rows, 1, 2));
+        // What another program has measured is measured again.
+        fs::write(rig.0.join("broken"), "").unwrap();
+        assert!(rig.measure(false).0.is_err());
+        fs::remove_file(rig.0.join("broken")).unwrap();
+        rig.build(&format!("{ANSWERS}\n# built anew"));
+        let (rows, references, measured) = rig.measure(false);
+        assert_eq!((rows.unwrap().len(), references, measured), (2, 0, 2));
+    }
+}

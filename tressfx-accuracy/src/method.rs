@@ -1,0 +1,84 @@
+//! Methods and their settings, as `tressfx render` takes them.
+
+use crate::figures::Extent;
+
+/// What belongs together in a plot: one technique in one variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Family {
+    pub(crate) name: &'static str,
+    words: &'static [&'static str],
+    ks: &'static [u32],
+    quick_ks: &'static [u32],
+}
+
+/// All families, in the order of the tables.
+pub(crate) const FAMILIES: [Family; 5] = [
+    Family { name: "ppll", words: &["--oit", "ppll"], ks: &[1, 2, 4, 8, 16], quick_ks: &[1, 4, 8, 16] },
+    Family {
+        name: "ppll-raster",
+        words: &["--oit", "ppll", "--fill", "raster"],
+        ks: &[1, 2, 4, 8, 16],
+        quick_ks: &[8],
+    },
+    Family { name: "shortcut-mean", words: &["--oit", "shortcut"], ks: &[1, 2, 3, 4, 8], quick_ks: &[1, 3, 8] },
+    Family {
+        name: "shortcut-ordered",
+        words: &["--oit", "shortcut", "--oit-ordered"],
+        ks: &[1, 2, 3, 4, 8],
+        quick_ks: &[3, 8],
+    },
+    Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
+];
+
+/// A family with a setting.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Method {
+    /// Such as `ppll-k8`.
+    pub(crate) name: String,
+    pub(crate) words: Vec<String>,
+}
+
+/// All methods.
+pub(crate) fn methods(extent: Extent) -> Vec<Method> {
+    FAMILIES.iter().flat_map(|family| of_family(family, extent)).collect()
+}
+
+fn of_family(family: &Family, extent: Extent) -> Vec<Method> {
+    let words =
+        |more: &[String]| family.words.iter().map(|word| (*word).to_owned()).chain(more.iter().cloned()).collect();
+    let ks = if extent == Extent::Quick { family.quick_ks } else { family.ks };
+    if ks.is_empty() {
+        return vec![Method { name: family.name.to_owned(), words: words(&[]) }];
+    }
+    let of = |k: &u32| Method {
+        name: format!("{}-k{k}", family.name),
+        words: words(&["--oit-k".to_owned(), k.to_string()]),
+    };
+    ks.iter().map(of).collect()
+}
+
+/// Which of [`FAMILIES`] a method belongs to, and its setting in words.
+pub(crate) fn family_of(method: &str) -> Option<(usize, &str)> {
+    let (name, setting) = method.rsplit_once("-k").unwrap_or((method, ""));
+    Some((FAMILIES.iter().position(|family| family.name == name)?, setting))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_has_a_name_of_its_own_that_leads_to_its_family() {
+        for extent in [Extent::Quick, Extent::Full] {
+            let mut names: Vec<_> = methods(extent).into_iter().map(|method| method.name).collect();
+            assert!(names.iter().all(|name| family_of(name).is_some()), "{names:?}");
+            let count = names.len();
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), count);
+        }
+        assert_eq!(methods(Extent::Full).len(), 21);
+        assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
+        assert_eq!(family_of("tiles"), Some((4, "")));
+    }
+}

@@ -1,0 +1,101 @@
+//! The page that people read.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+
+use crate::figures::{Extent, Row, Run};
+use crate::plot;
+
+/// Writes `README.md`.
+pub(crate) fn write(run: &Run, extent: Extent, docs: &Path) -> Result<()> {
+    let path = docs.join("README.md");
+    std::fs::write(&path, page(run, extent)).with_context(|| path.display().to_string())
+}
+
+fn page(run: &Run, extent: Extent) -> String {
+    let quick = if extent == Extent::Quick { " --quick" } else { "" };
+    let [width, height] = run.setting.size;
+    let mut page = format!(
+        "# Error against run time\n\n\
+         Made by `cargo xtask accuracy{quick}`, which also makes [accuracy.json](accuracy.json): the same figures, with the time \
+         of each pass.\n\
+         `cargo xtask accuracy{quick} --check` measures again and fails where an error has grown by more than 10 %.\n\n\
+         Each picture is compared with that of the reference renderer (`tressfx render --reference`), which traces fibres as \
+         solids with {} rays a pixel, at {width}x{height}; frames simulated: {}. FLIP, PSNR and the largest difference (of 255) are of \
+         the whole picture, with its backdrop. A part of each error is the sampling of the reference, the same for all methods of \
+         a scene.\n\n",
+        run.setting.samples, run.setting.frames
+    );
+    page.push_str(&devices(run));
+    for scene in run.scenes() {
+        let rows: Vec<&Row> = run.of_scene(scene).collect();
+        let _ = write!(page, "\n## {scene}\n\n{}\n{}", picture(scene, &rows), table(&rows));
+    }
+    page
+}
+
+/// On which devices the times were taken, and whether they say something of GPUs.
+fn devices(run: &Run) -> String {
+    let devices: BTreeSet<_> = run.rows.iter().map(|row| (&row.backend, &row.adapter, row.is_software())).collect();
+    let of = |(backend, adapter, is_software): (&String, &String, bool)| match is_software {
+        false => format!("* {backend}: times were taken on {adapter}.\n"),
+        true => format!(
+            "* {backend}: times were taken on {adapter}, which is **a CPU that plays a GPU**. They say nothing of the times on a \
+             GPU, nor of their order. Mesa's ends a shader after 65,535 rounds of its loops, so that rows of pixels may be missing \
+             where much hair lies in one tile.\n"
+        ),
+    };
+    devices.into_iter().map(of).collect()
+}
+
+fn picture(scene: &str, rows: &[&Row]) -> String {
+    match plot::is_drawn(rows) {
+        true => format!("![FLIP against milliseconds]({scene}.svg)\n"),
+        false => String::from("The device cannot time passes.\n"),
+    }
+}
+
+fn table(rows: &[&Row]) -> String {
+    let mut table = String::from(
+        "| method | backend | FLIP | PSNR, dB | largest | ms | fragments | dropped | MB |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let psnr = row.psnr_db.map_or_else(|| String::from("equal"), |decibels| format!("{decibels:.2}"));
+        let ms = row.ms().map_or_else(|| String::from("-"), |ms| format!("{ms:.3}"));
+        let cpu = if row.is_software() { " (CPU)" } else { "" };
+        let _ = writeln!(
+            table,
+            "| {} | {} | {:.5} | {psnr} | {} | {ms}{cpu} | {} | {} | {:.1} |",
+            row.method,
+            row.backend,
+            row.flip,
+            row.largest,
+            row.fragments,
+            row.dropped,
+            row.bytes as f64 * 1e-6
+        );
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::tests::row;
+
+    #[test]
+    fn times_of_a_cpu_are_called_so_on_the_page_and_in_the_table() {
+        let cpu = Row { adapter: "llvmpipe (LLVM)".into(), ..row("tiles", 0.125, 0.5) };
+        let untimed = Row { passes: Vec::new(), psnr_db: None, ..row("tiles", 0.125, 0.5) };
+        let of = |row: Row| page(&Run { setting: Extent::Quick.setting(), rows: vec![row] }, Extent::Quick);
+        let (software, hardware, untimed) = (of(cpu), of(row("tiles", 0.125, 0.5)), of(untimed));
+        assert!(software.contains("a CPU that plays a GPU") && software.contains("| 0.500 (CPU) |"), "{software}");
+        assert!(!hardware.contains("CPU") && hardware.contains("| tiles | wgpu | 0.12500 | 40.00 | 30 | 0.500 |"));
+        assert!(hardware.contains("(curly-near.svg)") && hardware.contains("--quick --check"));
+        assert!(untimed.contains("| equal | 30 | - |") && !untimed.contains(".svg"), "{untimed}");
+    }
+}

@@ -1,0 +1,113 @@
+//! What is drawn: grooms, and how near the camera is.
+
+use std::path::PathBuf;
+
+use crate::figures::Extent;
+
+/// How near the camera is: a share of the distance at which the sphere around the box of the groom fills the picture from top to
+/// bottom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    name: &'static str,
+    share: f64,
+}
+
+const NEAR: Place = Place { name: "near", share: 0.38 };
+const MIDDLE: Place = Place { name: "middle", share: 0.7 };
+const FAR: Place = Place { name: "far", share: 2.0 };
+
+/// Vertical field of view in degrees.
+const FOV: f64 = 30.0;
+
+/// A groom from a distance.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Scene {
+    /// Such as `curly-near`.
+    pub(crate) name: String,
+    /// As `tressfx` takes it; none where its folder is not known.
+    pub(crate) groom: Option<String>,
+    place: Place,
+}
+
+/// The box around a groom.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    pub(crate) min: [f64; 3],
+    pub(crate) max: [f64; 3],
+}
+
+/// Name of the groom, what `tressfx` takes, and whether it lies in the folder of real grooms.
+const GROOMS: [(&str, &str, bool); 6] = [
+    ("curly", "builtin:curly", false),
+    ("fur", "builtin:fur", false),
+    ("long", "builtin:long", false),
+    ("dense", "builtin:long:131072:32", false),
+    ("mohawk", "tressfx41_ratboy/Ratboy_mohawk.tfx", true),
+    ("sintel", "sintel_lite/GEO-sintel_hair_emit.002-sintel_hair.tfx", true),
+];
+
+/// In a quick run each groom is seen from one distance, and the dense one has fewer strands.
+const QUICK: [(&str, Place); 6] =
+    [("curly", NEAR), ("fur", FAR), ("long", MIDDLE), ("dense", NEAR), ("mohawk", FAR), ("sintel", MIDDLE)];
+const QUICK_DENSE: &str = "builtin:long:32768:16";
+
+/// All scenes; those of real grooms have no groom unless TRESSFX_ASSETS names a folder.
+pub(crate) fn scenes(extent: Extent) -> Vec<Scene> {
+    let assets = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from);
+    let scene = |name: &str, place: Place| {
+        let (_, file, is_real) = GROOMS.iter().find(|groom| groom.0 == name).expect("a groom of the table");
+        let file = if (name, extent) == ("dense", Extent::Quick) { QUICK_DENSE } else { file };
+        let groom = match is_real {
+            true => assets.as_ref().map(|assets| assets.join(file).to_string_lossy().into_owned()),
+            false => Some(file.to_owned()),
+        };
+        Scene { name: format!("{name}-{}", place.name), groom, place }
+    };
+    match extent {
+        Extent::Quick => QUICK.iter().map(|&(name, place)| scene(name, place)).collect(),
+        Extent::Full => {
+            GROOMS.iter().flat_map(|groom| [NEAR, MIDDLE, FAR].map(|place| scene(groom.0, place))).collect()
+        }
+    }
+}
+
+impl Scene {
+    /// What `tressfx render --camera` takes: slightly from above, from in front or, where the groom is much deeper than wide,
+    /// from the side.
+    pub(crate) fn camera(&self, bounds: &Bounds) -> String {
+        let extent = [0, 1, 2].map(|axis| bounds.max[axis] - bounds.min[axis]);
+        let center = [0, 1, 2].map(|axis| 0.5 * (bounds.max[axis] + bounds.min[axis]));
+        let direction = if extent[2] > 1.5 * extent[0] { [1.0, 0.12, 0.35] } else { [0.35, 0.12, 1.0] };
+        let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let distance = self.place.share * 0.5 * length(extent) / (0.5 * FOV).to_radians().sin();
+        let eye = [0, 1, 2].map(|axis| center[axis] + direction[axis] / length(direction) * distance);
+        let numbers = eye.iter().chain(&center).chain(&[FOV]).map(|number| format!("{number:.5}"));
+        numbers.collect::<Vec<_>>().join(",")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_enough_scenes_and_none_twice() {
+        for (extent, count) in [(Extent::Quick, 6), (Extent::Full, 18)] {
+            let mut names: Vec<_> = scenes(extent).into_iter().map(|scene| scene.name).collect();
+            names.sort();
+            names.dedup();
+            assert_eq!(names.len(), count);
+        }
+    }
+
+    #[test]
+    fn the_camera_sees_the_middle_from_its_distance() {
+        let scene = Scene { name: String::new(), groom: None, place: NEAR };
+        let camera = scene.camera(&Bounds { min: [-1.0, 0.0, -2.0], max: [1.0, 4.0, 2.0] });
+        let numbers: Vec<f64> = camera.split(',').map(|number| number.parse().unwrap()).collect();
+        assert_eq!(numbers[3..], [0.0, 2.0, 0.0, 30.0]);
+        let distance = (numbers[0].powi(2) + (numbers[1] - 2.0).powi(2) + numbers[2].powi(2)).sqrt();
+        assert!((distance - NEAR.share * 3.0 / 15f64.to_radians().sin()).abs() < 1e-3, "{distance}");
+        assert!(numbers[0] > numbers[2], "it is deep: from the side");
+    }
+}
