@@ -16,6 +16,7 @@ pub struct UniformArray<T> {
     buffer: BufferId,
     /// From struct to struct, in bytes: as ranges of bindings are aligned.
     stride: u64,
+    count: u64,
     holds: PhantomData<fn() -> T>,
 }
 
@@ -29,7 +30,12 @@ impl<T: NoUninit> UniformArray<T> {
     pub fn new(backend: &mut dyn Backend, label: Label, count: usize) -> Result<Self> {
         let stride = Self::BYTES.next_multiple_of(backend.caps().binding_alignment);
         let buffer = backend.create_buffer(&BufferDesc::uniform(label, stride * count as u64))?;
-        Ok(Self { buffer, stride, holds: PhantomData })
+        Ok(Self { buffer, stride, count: count as u64, holds: PhantomData })
+    }
+
+    /// Bytes of the buffer.
+    pub fn bytes(&self) -> u64 {
+        self.stride * self.count
     }
 
     /// What a pass binds for the struct at `index`.

@@ -182,6 +182,7 @@ impl HairRenderer {
     ) -> std::result::Result<(), DrawError> {
         self.check(views, draws)?;
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
+        self.order.check(&draws)?;
         self.order.begin(list, views.len(), &draws);
         self.shade.begin();
         if draws.is_empty() || views.iter().all(|draw| draw.view.is_empty()) {

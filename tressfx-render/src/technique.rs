@@ -61,6 +61,11 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// The buffer with the [`Counters`](crate::Counters) of each view, and where those of a view are.
     fn counters(&self, view: usize) -> (BufferId, u64);
 
+    /// Whether it can draw these sections, before anything is written.
+    fn check(&self, _: &[SectionDraw]) -> Result<()> {
+        Ok(())
+    }
+
     /// Begins a frame with this many views: uploads what is the same for all of them.
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]);
 

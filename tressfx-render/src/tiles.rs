@@ -138,6 +138,15 @@ impl TechniqueInstance for Tiles {
         (self.memory.counters.of(view), 0)
     }
 
+    fn check(&self, draws: &[SectionDraw]) -> Result<()> {
+        let (wanted, room) = (Layout::new(draws)?.vertices, self.memory.vertices.count);
+        if wanted > room {
+            let message = format!("{wanted} vertices, there is room for {room}: `grow_to_predicted` makes room");
+            return Err(Error::rule("hair.render.tiles", message));
+        }
+        Ok(())
+    }
+
     fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
@@ -146,13 +155,6 @@ impl TechniqueInstance for Tiles {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         let layout = Layout::new(draws)?;
-        if layout.vertices > self.memory.vertices.count {
-            let message = format!(
-                "{} vertices, there is room for {}: `grow_to_predicted` makes room",
-                layout.vertices, self.memory.vertices.count
-            );
-            return Err(Error::rule("hair.render.tiles", message));
-        }
         let uniforms = layout.uniforms(view.view, draws, &self.desc, &self.memory.references);
         self.memory.uniforms.upload(list, view.index * memory::UNIFORMS_OF_A_VIEW, &uniforms);
         self.memory.clear(list, view.size);

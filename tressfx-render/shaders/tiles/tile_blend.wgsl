@@ -32,9 +32,10 @@ const NO_TILE: u32 = 0xffffffffu;
 const OWN: u32 = (ENTRIES + LANES - 1u) / LANES;
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
-// The sums of a mean have room for this many white fragments of a pixel.
-const MOST_IN_MEAN: u32 = 16384u;
-const MEAN_UNIT: f32 = 256.0;
+// The sums of a mean have room for so many fragments of a pixel of this brightness.
+const MOST_IN_MEAN: u32 = 2048u;
+const BRIGHTEST_IN_MEAN: f32 = 16.0;
+const MEAN_UNIT: f32 = 65536.0;
 
 // A tile, or a part of it.
 struct Job {
@@ -92,8 +93,8 @@ fn add_to_mean(pixel: u32, fragment: Fragment) {
     if atomicAdd(&counts[pixel], 1u) >= MOST_IN_MEAN {
         return;
     }
-    let color = weighted(fragment.color, fragment.alpha, MEAN_UNIT);
-    atomicAdd(&sums[pixel][0], optical_depth(fragment.alpha) / 8u);
+    let color = weighted(min(fragment.color, vec3(BRIGHTEST_IN_MEAN)), fragment.alpha, MEAN_UNIT);
+    atomicAdd(&sums[pixel][0], optical_depth(fragment.alpha));
     atomicAdd(&sums[pixel][1], fragment.alpha);
     atomicAdd(&sums[pixel][2], color.x);
     atomicAdd(&sums[pixel][3], color.y);
@@ -263,7 +264,7 @@ fn blend_mean(front: Front, pixel: u32) -> Front {
     var blended = front;
     if weight > 0u {
         let color = vec3(atomicLoad(&sums[pixel][2]), atomicLoad(&sums[pixel][3]), atomicLoad(&sums[pixel][4]));
-        let alpha = 1.0 - transmittance_of(8u * min(atomicLoad(&sums[pixel][0]), 0xfffffffu));
+        let alpha = 1.0 - transmittance_of(atomicLoad(&sums[pixel][0]));
         blended = over(front, mean_color(color, weight, MEAN_UNIT), alpha);
     }
     for (var i = 0u; i < 5u; i++) {

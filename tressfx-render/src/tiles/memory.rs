@@ -40,8 +40,6 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    const BYTES: u64 = 16 + 8;
-
     fn new(backend: &mut dyn Backend, count: u64) -> Result<Self> {
         let points = storage(backend, "hair.render.points", 16 * count)?;
         Ok(Self { points, paints: storage(backend, "hair.render.paints", 8 * count)?, count })
@@ -203,13 +201,12 @@ impl Memory {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        sizes(self.screen.size).iter().sum::<u64>()
-            + 2 * sizes(self.screen.size)[1]
-            + Resolved::bytes(self.screen.size)
-            + Vertices::BYTES * self.vertices.count
-            + References::BYTES * u64::from(self.references.count)
-            + GROUPS_BYTES
-            + ViewCounters::BYTES
+        let [bins, depths, queue] = sizes(self.screen.size);
+        let vertices = [16, 8].map(|bytes| (bytes * self.vertices.count).max(16));
+        let references = (References::BYTES * u64::from(self.references.count)).max(16);
+        let tiles = [bins, depths, depths, depths, queue].map(|bytes| bytes.max(16));
+        let rest = Resolved::bytes(self.screen.size) + GROUPS_BYTES + ViewCounters::BYTES + self.uniforms.bytes();
+        tiles.iter().chain(&vertices).sum::<u64>() + references + rest
     }
 
     /// What the kernels of a view are given: for counting, or for a round.
