@@ -34,6 +34,9 @@ struct Args {
     /// What runs the passes
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
     device: Device,
+    /// Measure nothing: write the page and the plots anew from accuracy.json
+    #[arg(long, conflicts_with = "check")]
+    pages: bool,
     /// Draw the pictures of the reference renderer anew: for when the look of the scenes has changed
     #[arg(long)]
     fresh: bool,
@@ -74,6 +77,11 @@ fn main() -> Result<()> {
     let stored = report.run(extent).take();
     if args.check && stored.is_none() {
         bail!("{}: it holds no {} run to check against", path.display(), extent.name());
+    }
+    if args.pages {
+        let run = stored.with_context(|| format!("{}: it holds no {} run", path.display(), extent.name()))?;
+        plot::write(&run, &args.docs)?;
+        return page::write(&run, extent, &args.docs);
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent.setting(), args.fresh);
     let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;

@@ -14,7 +14,7 @@ use crate::technique::{Technique, TechniqueInstance};
 use crate::views::{MAX_VIEWS, ViewDraw, Views};
 
 /// The pool is made this many times as large as predicted or measured, since the next frame may need more.
-const HEADROOM: f64 = 1.25;
+pub(crate) const HEADROOM: f64 = 1.25;
 
 /// Describes a renderer that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]

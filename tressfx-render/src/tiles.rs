@@ -110,8 +110,9 @@ impl TechniqueInstance for Tiles {
         Ok(())
     }
 
+    /// No more than there is room for in one round: only what was measured asks for more rounds.
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
-        predict::references(view, draws)
+        predict::references(view, draws).min(self.memory.largest_round())
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {

@@ -10,6 +10,7 @@ use tressfx_core::uniform_array::UniformArray;
 use super::TilesDesc;
 use super::layout::{SLICES, TilesUniform};
 use crate::counters::ViewCounters;
+use crate::renderer::HEADROOM;
 use crate::resolved::{Resolved, pixels, storage, tile_count};
 use crate::views::MAX_VIEWS;
 
@@ -166,6 +167,11 @@ impl Memory {
             counters: ViewCounters::new(backend)?,
             uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", MAX_VIEWS * UNIFORMS_OF_A_VIEW)?,
         })
+    }
+
+    /// What may be predicted for one round, before room is added for what the next frame may need.
+    pub(crate) fn largest_round(&self) -> f64 {
+        f64::from(self.most_references) / HEADROOM
     }
 
     pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
