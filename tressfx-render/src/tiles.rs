@@ -3,8 +3,7 @@
 //! The screen is divided into tiles of 8 x 8 pixels, and depth into slices. Segments are referred to from the bins, a slice of a
 //! tile, that they touch. A group of lanes then makes the fragments of a tile, slice after slice, sorts them in its own memory and
 //! blends them. So fragments are never stored, those that nobody sees are never made, and the memory is that of the references.
-//! The same is done by Unity's high quality lines and by Frostbite's hair (see `Frostbite Hair`, SIGGRAPH 2019), which sort
-//! segments, not fragments.
+//! Unity's high quality lines and Frostbite's hair go through tiles in the same way; they sort segments, not fragments.
 
 mod kernels;
 mod layout;

@@ -2,7 +2,6 @@
 // Eight lanes a tile, a part of its slices each.
 
 import package::grid::GROUP;
-import package::screen::view;
 import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, parts_of, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
@@ -36,7 +35,7 @@ var<workgroup> tile_places: array<u32, TILES>;
 var<workgroup> class_sizes: array<atomic<u32>, CLASSES>;
 var<workgroup> class_places: array<u32, CLASSES>;
 
-// Room for references of a group. What lies beyond the capacity does not exist.
+// Room for references of a group, at most MOST. What lies beyond the capacity does not exist.
 fn request(count: u32) -> u32 {
     // All requests like this one together stay below MOST.
     if count <= MOST / (tile_count() / TILES + 1u) {
@@ -44,7 +43,7 @@ fn request(count: u32) -> u32 {
     }
     var old = atomicLoad(&queue.references);
     while old < MOST {
-        let exchange = atomicCompareExchangeWeak(&queue.references, old, min(old + min(count, MOST), MOST));
+        let exchange = atomicCompareExchangeWeak(&queue.references, old, min(old + count, MOST));
         if exchange.exchanged {
             break;
         }
@@ -119,9 +118,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));
     }
     workgroupBarrier();
-    if tile >= tile_count() {
-        return;
-    }
+    // Nor has a lane beyond the last tile.
     if count == 0u {
         return;
     }

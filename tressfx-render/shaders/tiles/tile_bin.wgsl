@@ -1,6 +1,7 @@
-// Segments are referred to from the slices of the tiles that they touch. It runs twice: to count the references of each bin,
-// and, once each bin has its place, to store them; where there is no room for all, for some tiles a round. All are the same code, compiled once, so that a compiler cannot round them
-// differently: a bin gets exactly what was counted for it. One thread a segment.
+// Segments are referred to from the slices of the tiles that they touch. It runs to count the references of each bin, and, once
+// each bin has its place, to store them; where there is no room for all of them, those of some tiles in each round. It is the same
+// code each time, compiled once, so that a compiler cannot round it differently: a bin gets exactly what was counted for it. One
+// thread a segment.
 
 import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};

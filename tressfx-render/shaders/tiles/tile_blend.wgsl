@@ -320,8 +320,8 @@ fn go_on(unit: Unit, found: u32) {
 // The pixels of a part of a tile: its first pixel, and the one after the last.
 fn area_of(own: Job) -> vec4<u32> {
     let corner = vec2(own.tile.tile % tile_columns(), own.tile.tile / tile_columns()) * TILE;
-    // 1, 2 or 4 parts along an edge.
-    let along = select(select(1u, 2u, own.parts == 4u), 4u, own.parts == 16u);
+    // Parts along an edge.
+    let along = select(1u, 2u, own.parts == 4u);
     let first = corner + vec2(own.part % along, own.part / along) * (TILE / along);
     return vec4(first, min(first + TILE / along, view.size));
 }

@@ -2,10 +2,10 @@
 // them; and the nearest vertex of each tile. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
-import package::ribbon::{End, is_sound, on_screen};
+import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
 import package::strands::{colors, end_at, positions, section};
-import package::tiles::{TILE, tile_columns};
+import package::tiles::{TILE, nearness_at, tile_columns};
 
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
@@ -24,12 +24,8 @@ fn point_of(end: End) -> vec4<f32> {
     if distance <= view.lens.near {
         return vec4(end.point, -max(end.radius, 1e-30));
     }
-    var scale = 1.0;
-    var nearness = 1.0 - view.lens.nearness_slope * distance;
-    if view.lens.is_perspective == 1u {
-        scale = 1.0 / distance;
-        nearness = scale;
-    }
+    let nearness = nearness_at(distance);
+    let scale = scale_of(view.lens, vec2(nearness)).x;
     return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
 }
 

@@ -8,9 +8,8 @@ const TILE: u32 = 8u;
 const SLICES: u32 = 64u;
 // Kinds of tiles by the number of their references, the heaviest last.
 const CLASSES: u32 = 8u;
-// Tiles of these classes and heavier ones are divided into 4 and into 16 parts, each for a group: one alone would take too long.
+// Tiles of this class and heavier ones are divided into 4 parts, each for a group: one alone would take too long.
 const CLASS_OF_4: u32 = 6u;
-const CLASS_OF_16: u32 = 8u;
 const MAX_SECTIONS: u32 = 64u;
 // Set in a reference from the nearest slice that the segment touches in the tile. The other bits are the segment's first vertex.
 const IS_NEAREST: u32 = 0x80000000u;
@@ -78,7 +77,7 @@ struct WaitingTiles {
 
 // Parts of a tile.
 fn parts_of(load_class: u32) -> u32 {
-    return select(select(1u, 4u, load_class >= CLASS_OF_4), 16u, load_class >= CLASS_OF_16);
+    return select(1u, 4u, load_class >= CLASS_OF_4);
 }
 
 fn tile_columns() -> u32 {

@@ -11,6 +11,9 @@ use crate::strands::SectionDraw;
 /// Sections that can be drawn together.
 pub(crate) const MAX_SECTIONS: usize = 64;
 
+/// Vertices that can be drawn together: a reference has 31 bits for one.
+const MAX_VERTICES: u64 = 1 << 31;
+
 /// Slices of depth.
 pub(crate) const SLICES: u32 = 64;
 
@@ -77,8 +80,8 @@ impl Layout {
             return Err(rule(format!("{} sections, tiles can draw {MAX_SECTIONS}", draws.len())));
         }
         let vertices = vertices(draws);
-        if vertices > u64::from(u32::MAX) {
-            return Err(rule(format!("{vertices} vertices, tiles can draw {}", u32::MAX)));
+        if vertices > MAX_VERTICES {
+            return Err(rule(format!("{vertices} vertices, tiles can draw {MAX_VERTICES}")));
         }
         let (mut segment, mut vertex) = (0, 0);
         let mut sections = [[0; 4]; MAX_SECTIONS];
