@@ -3,7 +3,9 @@
 mod support;
 
 use glam::{DVec3, Quat, Vec3, Vec4};
-use tressfx_conformance::sim::{Motion, REAL, Rig, random_strands, real, strand_errors, wide, worst};
+use tressfx_conformance::sim::{
+    Motion, REAL, Rig, random_asset, random_strands, real, strand_errors, strands_of, wide, worst,
+};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_sim::reference::{self, Guide};
@@ -112,7 +114,7 @@ fn check(name: &str, strands: Strands) {
 }
 
 fn check_frame_end(name: &str, rig: &mut Rig, step: &Step) {
-    Solver::FRAME_END.iter().for_each(|&stage| rig.stage(step, stage));
+    rig.stage(step, Solver::FRAME_END);
     let (positions, tangents) = (rig.positions(0), rig.tangents(0));
     let strands = &rig.strands[0];
     let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
@@ -123,11 +125,11 @@ fn check_frame_end(name: &str, rig: &mut Rig, step: &Step) {
         .enumerate()
         .flat_map(|(index, &offset)| {
             let start = index % guides * vertices;
-            reference::follow(step, &all[start..start + vertices], offset, None)
+            reference::follow_strand(step, &all[start..start + vertices], offset, None)
         })
         .collect();
     let error = worst(strands, &positions[guides * vertices..], &follows);
-    assert!(error <= TOLERANCE, "{name} hair.sim.follow: {error:e}");
+    assert!(error <= TOLERANCE, "{name} hair.sim.tangents: follow strands: {error:e}");
 
     for (strand, (points, tangents)) in all.chunks(vertices).zip(tangents.chunks(vertices)).enumerate() {
         let expected = reference::tangents(points);
@@ -168,6 +170,29 @@ fn kernels_match_their_references_with_both_ends_pinned() {
         strand[11].w = 0.0;
     }
     check("both ends pinned", strands);
+}
+
+/// The first guide has no edge with a length, the second none at its root, the third none at its tip; follow strands have none
+/// there either, or the spread gives them some.
+#[test]
+fn tangents_where_edges_have_no_length() {
+    let (vertices, mut asset) = (8, random_asset(3, 8, 3));
+    for (strand, range) in [0..8, 0..4, 4..8].into_iter().enumerate() {
+        let points = &mut asset.points[strand * vertices..][range];
+        points.fill(points[0]);
+    }
+    for tip_separation in [0.0, 1.5] {
+        let params = SimParams { tip_separation: Some(tip_separation), ..params() };
+        let Some(mut rig) = rig(strands_of(asset.clone(), 2), params, &[]) else { return };
+        rig.frame(&Motion::still(&rig.strands[0]).input(0.0, 0.0));
+        let (points, tangents) = (wide(&rig.positions(0)), rig.tangents(0));
+        let expected = points.chunks(vertices).flat_map(reference::tangents);
+        for (index, (tangent, expected)) in tangents.iter().zip(expected).enumerate() {
+            let (strand, vertex) = (index / vertices, index % vertices);
+            let error = tangent.truncate().as_dvec3().distance(expected);
+            assert!(error < 1e-4, "{tip_separation}: strand {strand} vertex {vertex}: {tangent}, not {expected}");
+        }
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod support;
 
 use glam::{Quat, Vec3, Vec4};
 use support::gpu;
-use tressfx_conformance::sim::{Motion, Rig, random_strands, strand_errors};
+use tressfx_conformance::sim::{Motion, Rig, random_strands, strand_errors, wide};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::{SectionDesc, SimError, SimParams, StepInput, reference};
@@ -117,6 +117,10 @@ fn a_twisting_scalp_matches_the_reference() {
     let (median, largest) = (errors[errors.len() / 2], errors[errors.len() - 1]);
     println!("after 60 sub-steps {median:.1e} (median), {largest:.1e} (largest) of strand length");
     assert!(largest < 1e-3, "{largest:e}");
+    let (points, tangents) = (wide(&rig.positions(0)), rig.tangents(0));
+    for (tangent, expected) in tangents.iter().zip(points.chunks(16).flat_map(reference::tangents)) {
+        assert!(tangent.truncate().as_dvec3().distance(expected) < 1e-4, "{tangent}, not {expected}");
+    }
 }
 
 #[test]

@@ -37,8 +37,6 @@ struct Step {
     strands: u32,
     /// Vertices of each strand.
     vertices: u32,
-    /// Follow strands of each guide.
-    follows: u32,
     /// Iterations of the local shape constraints.
     local_iterations: u32,
     /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
@@ -47,6 +45,7 @@ struct Step {
     first_capsule: u32,
     /// The capsule after the last one.
     end_capsule: u32,
+    unused: u32,
 }
 
 @group(0) @binding(0) var<uniform> step: Step;

@@ -4,7 +4,6 @@
 //! strands, so that a kernel that does the work of several can import them.
 
 pub(crate) mod collide;
-pub(crate) mod follow;
 pub(crate) mod integrate;
 pub(crate) mod lengths;
 pub(crate) mod local_shape;
@@ -119,26 +118,17 @@ impl PassMaker<'_> {
 
     /// A thread a vertex of a guide: along z the vertices.
     fn guide_vertices(&self) -> Grid {
-        over_vertices(self.guides(), self.buffers.strands.shape.vertices)
+        let Grid([x, y, _]) = self.guides();
+        Grid([x, y, self.buffers.strands.shape.vertices])
     }
 
-    /// A thread a vertex of a follow strand: along x the guides, along y their follow strands, along z the vertices. Where that
-    /// is too many groups, a thread does the work of several.
-    fn follow_vertices(&self) -> Grid {
-        let shape = &self.buffers.strands.shape;
-        let groups = [shape.guides.div_ceil(GROUP), shape.follows].map(|count| count.clamp(1, Grid::MAX_GROUPS));
-        Grid([groups[0], groups[1], shape.vertices])
-    }
-
-    /// A thread a vertex of any strand: along z the vertices.
+    /// A thread a vertex of any strand: along x the guides, along y what each of them has, itself and its follow strands, along
+    /// z the vertices. Where there are too many guides, a thread does the work of several.
     fn strand_vertices(&self) -> Grid {
         let shape = &self.buffers.strands.shape;
-        over_vertices(Grid::for_threads(shape.strands(), GROUP), shape.vertices)
+        let groups = shape.guides.div_ceil(GROUP).clamp(1, Grid::MAX_GROUPS);
+        Grid([groups, 1 + shape.follows, shape.vertices])
     }
-}
-
-fn over_vertices(Grid([x, y, _]): Grid, vertices: u32) -> Grid {
-    Grid([x, y, vertices])
 }
 
 #[cfg(test)]
@@ -152,6 +142,7 @@ mod tests {
         import package::local_shape::{BentEdge, bent};
         import package::root::root_of;
         import package::step::step;
+        import package::tangents::{Neighborhood, beside, directions};
         import package::vector::DOWN;
         import package::wind::{across_edge, wind_of};
 
@@ -168,21 +159,24 @@ mod tests {
             sweep(&window, edge.next, 1.0, 1u);
             strand[1] = vec4(place(&placing, window.vertices[SWEEPS], window.lengths[SWEEPS], last, last, false), 1.0);
             strand[0] = placing.parent;
+            let follow = beside(Neighborhood(DOWN, placing.parent.xyz, DOWN), DOWN, 1u);
+            strand[2] = vec4(directions(follow, 1u), 0.0);
         }";
 
     #[test]
     fn one_kernel_can_do_the_work_of_several() {
-        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, wind::SOURCE];
+        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, tangents::SOURCE, wind::SOURCE];
         let library: Vec<Module> = LIBRARY.iter().copied().chain(kernels.map(|source| source.root)).collect();
         let text = format!("import package::constants::SWEEPS;\n{FUSED}");
         let source = ShaderSource { label: "test.fused", root: ("fused", text.leak()), library: Vec::leak(library) };
-        for roots in [false, true] {
+        for (roots, follows) in [(false, false), (false, true), (true, true)] {
             let specialization = Specialization::new()
                 .constant("SWEEPS", 1)
                 .constant("CHUNK", 1)
                 .feature("global_shape", true)
                 .feature("pinned_tips", false)
-                .feature("roots", roots);
+                .feature("roots", roots)
+                .feature("follows", follows);
             Shader::new(&source, &specialization).unwrap();
         }
     }

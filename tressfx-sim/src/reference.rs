@@ -1,10 +1,9 @@
 //! The kernels in f64 on the CPU, one strand at a time. Tests compare the results of the GPU with these.
 //!
-//! Every function does what the kernel of the same name does, with the same [`Step`]. Arrays are
-//! strand-major, as in [`Strands`](tressfx_core::strands::Strands).
+//! Every function does what the kernel of the same name does, with the same [`Step`]; [`follow_strand`] is the part of the
+//! kernel `tangents` that places follow strands. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
 mod collide;
-mod follow;
 mod integrate;
 mod lengths;
 mod local_shape;
@@ -21,14 +20,13 @@ use crate::step::Step;
 use roots::RootMotion;
 
 pub use collide::collide;
-pub use follow::follow;
 pub use integrate::integrate;
 pub use lengths::lengths;
 pub use local_shape::local_shape;
 pub use recovery::recovery;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
-pub use tangents::tangents;
+pub use tangents::{follow_strand, tangents};
 pub use wind::wind;
 
 /// One guide; a slice of each array of its section.

@@ -8,7 +8,6 @@ use tressfx_core::pass::PassList;
 
 use crate::buffers::{CapsuleBuffers, SectionBuffers};
 use crate::kernel::collide::collide;
-use crate::kernel::follow::follow;
 use crate::kernel::integrate::integrate;
 use crate::kernel::lengths::lengths;
 use crate::kernel::local_shape::local_shape;
@@ -51,7 +50,6 @@ struct Passes {
     lengths: Pass,
     recovery: Pass,
     collide: Option<Pass>,
-    follow: Option<Pass>,
     tangents: Pass,
 }
 
@@ -107,7 +105,6 @@ impl SimSection {
             Stage::Lengths => Some(&passes.lengths),
             Stage::Recovery => Some(&passes.recovery),
             Stage::Collide => passes.collide.as_ref(),
-            Stage::Follow => passes.follow.as_ref(),
             Stage::Tangents => Some(&passes.tangents),
         };
         pass.iter().for_each(|pass| pass.record(list, step));
@@ -129,7 +126,6 @@ impl Passes {
             lengths: lengths(maker, params)?,
             recovery: recovery(maker)?,
             collide: collide(maker)?,
-            follow: follow(maker)?,
             tangents: tangents(maker)?,
         })
     }

@@ -149,9 +149,7 @@ impl HairSim {
         if report.reset || report.sub_steps > 0 {
             let last = plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS).last();
             let place = last.map_or(ALONE, |last| FIRST + last.len() - 1);
-            for stage in Solver::FRAME_END {
-                self.sections.iter().for_each(|section| section.record(list, stage, place));
-            }
+            self.sections.iter().for_each(|section| section.record(list, Solver::FRAME_END, place));
         }
         Ok(report)
     }

@@ -23,8 +23,8 @@ pub(crate) struct Conditions {
 impl Solver {
     /// The stages of a reset.
     pub const RESET: [Stage; 2] = [Stage::Roots, Stage::Integrate];
-    /// The stages that a frame ends with, whatever the solver.
-    pub const FRAME_END: [Stage; 2] = [Stage::Follow, Stage::Tangents];
+    /// The stage that a frame ends with, whatever the solver.
+    pub const FRAME_END: Stage = Stage::Tangents;
 
     /// The stages of a sub-step, in order.
     pub fn stages(self) -> &'static [Stage] {

@@ -20,9 +20,7 @@ pub enum Stage {
     Recovery,
     /// Strands leave the capsules.
     Collide,
-    /// Follow strands are placed; once a frame.
-    Follow,
-    /// Tangents of all strands; once a frame.
+    /// Follow strands are placed, and all strands get their tangents; once a frame.
     Tangents,
 }
 
@@ -37,7 +35,6 @@ impl Stage {
             Self::Lengths => "hair.sim.lengths",
             Self::Recovery => "hair.sim.recovery",
             Self::Collide => "hair.sim.collide",
-            Self::Follow => "hair.sim.follow",
             Self::Tangents => "hair.sim.tangents",
         }
     }

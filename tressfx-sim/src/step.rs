@@ -64,8 +64,6 @@ gpu_struct! {
         pub strands: u32,
         /// Vertices of each strand.
         pub vertices: u32,
-        /// Follow strands of each guide.
-        pub follows: u32,
         /// Iterations of the local shape constraints.
         pub local_iterations: u32,
         /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
@@ -74,6 +72,8 @@ gpu_struct! {
         pub first_capsule: u32,
         /// The capsule after the last one.
         pub end_capsule: u32,
+        /// Nothing.
+        pub unused: u32,
     }
 }
 
@@ -158,11 +158,11 @@ impl Step {
             guides: info.shape.guides,
             strands: info.shape.strands(),
             vertices: info.shape.vertices,
-            follows: info.shape.follows,
             local_iterations: params.local_iterations,
             root_share: sub.share_of_remaining_frame as f32,
             first_capsule: 0,
             end_capsule: 0,
+            unused: 0,
         }
     }
 }

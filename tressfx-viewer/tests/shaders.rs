@@ -81,7 +81,8 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     }
     assert_eq!(labels, labels_of_kernels());
     let both = |name| [format!("{name} false"), format!("{name} true")];
-    assert_eq!(features, ["global_shape", "ordered", "pinned_tips", "roots"].into_iter().flat_map(both).collect());
+    let names = ["follows", "global_shape", "ordered", "pinned_tips", "roots"];
+    assert_eq!(features, names.into_iter().flat_map(both).collect());
 }
 
 /// Every binding stands in the text, with its name in the line that says where it is.

@@ -230,8 +230,7 @@ macro_rules! each_case {
                 lengths_is_as_in_f64: [Compute ReadBack];
                 recovery_is_as_in_f64: [Compute ReadBack];
                 collide_is_as_in_f64: [Compute ReadBack];
-                follow_is_as_in_f64: [Compute ReadBack];
-                tangents_are_as_in_f64: [Compute ReadBack];
+                tangents_is_as_in_f64: [Compute ReadBack];
                 a_second_is_as_in_f64: [Compute ReadBack];
                 a_picture_is_as_in_f64_in_standard_order: [Compute Raster ReadBack];
                 a_picture_is_as_in_f64_in_reverse_order: [Compute Raster ReadBack];

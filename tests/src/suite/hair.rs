@@ -134,27 +134,19 @@ pub(super) fn collide_is_as_in_f64(t: &mut Subject) {
     kernel(t, Kernel::Collide, |step, guide, _, capsules| reference::collide(step, guide, capsules));
 }
 
-pub(super) fn follow_is_as_in_f64(t: &mut Subject) {
-    let (mut rig, step) = moved(t);
-    rig.stage(&step, Kernel::Follow);
-    let positions = rig.positions(0);
-    let strands = &rig.strands[0];
-    let (guides, all) = (strands.rest.len(), wide(&positions));
-    let guide = |index: usize| &all[index * strands.vertices as usize..(index + 1) * strands.vertices as usize];
-    let offsets = strands.follow_offsets.iter().enumerate();
-    let expected: Vec<_> = offsets
-        .flat_map(|(index, &offset)| reference::follow(&step, guide(index % strands.guides as usize), offset, None))
-        .collect();
-    let error = worst(strands, &positions[guides..], &expected);
-    assert!(!expected.is_empty() && error <= TOLERANCE, "{error:e} of strand length");
-}
-
-pub(super) fn tangents_are_as_in_f64(t: &mut Subject) {
+pub(super) fn tangents_is_as_in_f64(t: &mut Subject) {
     let (mut rig, step) = moved(t);
     rig.stage(&step, Kernel::Tangents);
-    let (positions, tangents) = (wide(&rig.positions(0)), rig.tangents(0));
-    let vertices = rig.strands[0].vertices as usize;
-    for (points, tangents) in positions.chunks(vertices).zip(tangents.chunks(vertices)) {
+    let (positions, tangents) = (rig.positions(0), rig.tangents(0));
+    let strands = &rig.strands[0];
+    let (vertices, all) = (strands.vertices as usize, wide(&positions));
+    let guides: Vec<_> = all.chunks(vertices).take(strands.guides as usize).collect();
+    let offsets = strands.follow_offsets.iter().zip(guides.iter().cycle());
+    let follows: Vec<_> =
+        offsets.flat_map(|(&offset, guide)| reference::follow_strand(&step, guide, offset, None)).collect();
+    let error = worst(strands, &positions[strands.rest.len()..], &follows);
+    assert!(!follows.is_empty() && error <= TOLERANCE, "{error:e} of strand length");
+    for (points, tangents) in all.chunks(vertices).zip(tangents.chunks(vertices)) {
         for (found, expected) in tangents.iter().zip(reference::tangents(points)) {
             let error = found.truncate().as_dvec3().distance(expected);
             assert!(error < 1e-4, "{found} is not {expected}");

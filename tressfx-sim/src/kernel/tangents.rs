@@ -1,4 +1,4 @@
-//! `hair.sim.tangents`: unit tangents of all strands.
+//! `hair.sim.tangents`: follow strands beside their guides, and unit tangents of all strands.
 
 use tressfx_core::Result;
 use tressfx_core::shader::{ShaderSource, Specialization};
@@ -12,7 +12,14 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 };
 
 pub(crate) fn tangents(maker: &mut PassMaker) -> Result<Pass> {
-    let buffers = &maker.buffers.strands;
-    let resources = [("positions", buffers.positions.into()), ("strand_tangents", buffers.tangents.into())];
-    maker.pass(&SOURCE, &Specialization::new(), &resources, maker.strand_vertices())
+    let (buffers, grid) = (maker.buffers, maker.strand_vertices());
+    let follow_offsets = buffers.follow_offsets.map(|offsets| ("follow_offsets", offsets.into()));
+    let specialization = Specialization::new().feature("follows", follow_offsets.is_some());
+    let strands =
+        [("positions", buffers.strands.positions.into()), ("strand_tangents", buffers.strands.tangents.into())];
+    match follow_offsets {
+        // Guides are where they are, whatever their roots do.
+        None => maker.pass(&SOURCE, &specialization, &strands, grid),
+        Some(offsets) => maker.pass_with_roots(&SOURCE, specialization, &[&strands[..], &[offsets]].concat(), grid),
+    }
 }

@@ -5,7 +5,9 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
-use super::{Guide, GuideRoot, RootPlace, collide, follow, integrate, lengths, local_shape, recovery, roots, wind};
+use super::{
+    Guide, GuideRoot, RootPlace, collide, follow_strand, integrate, lengths, local_shape, recovery, roots, wind,
+};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
 use crate::collider::CapsuleMotion;
@@ -116,7 +118,7 @@ impl<'a> Simulation<'a> {
         let follows = section.strands.follow_offsets.iter().enumerate().flat_map(|(index, &offset)| {
             let (guide, start) = (index % guides, index % guides * vertices);
             let root = section.roots.get(guide).map(|(.., root)| root);
-            follow(&section.step, &section.positions[start..start + vertices], offset, root)
+            follow_strand(&section.step, &section.positions[start..start + vertices], offset, root)
         });
         section.positions.iter().copied().chain(follows).collect()
     }
