@@ -276,7 +276,7 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
     for (tile, first) in waiting {
         let end = bins[63 * 96 + tile as usize];
         for reference in &references[first as usize..end as usize] {
-            *nearest.entry((tile, reference & 0x7fff_ffff)).or_insert(0) += reference >> 31;
+            *nearest.entry((tile, reference & 0x07ff_ffff)).or_insert(0) += reference >> 31;
         }
     }
     assert!(nearest.values().all(|&flags| flags == 1), "one slice of a tile is the nearest");

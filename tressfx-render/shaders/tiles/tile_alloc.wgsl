@@ -2,7 +2,7 @@
 // Eight lanes a tile, a part of its slices each.
 
 import package::grid::GROUP;
-import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, parts_of, tile_count};
+import package::tiles::{CLASSES, QUARTERS, Queue, ROW, SLICES, WaitingTile, tile_count};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
@@ -10,7 +10,7 @@ import package::tiles::{CLASSES, Queue, ROW, SLICES, WaitingTile, parts_of, tile
 @group(0) @binding(8) var<storage, read_write> hairy: array<u32>;
 @group(0) @binding(11) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
-// The grid of groups that takes a tile each.
+// The grid of groups that takes a quarter of a tile each.
 @group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
 
 // Nearness of the nearest vertex, a tile.
@@ -29,7 +29,6 @@ var<workgroup> group_references: atomic<u32>;
 var<workgroup> group_place: u32;
 var<workgroup> group_tile: u32;
 var<workgroup> group_size: atomic<u32>;
-var<workgroup> group_parts: atomic<u32>;
 var<workgroup> sums: array<u32, GROUP>;
 var<workgroup> tile_places: array<u32, TILES>;
 var<workgroup> class_sizes: array<atomic<u32>, CLASSES>;
@@ -52,16 +51,17 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
-// The draw holds so many tiles more, and the grid so many groups. Returns how many tiles there were.
-fn lengthen(tiles: u32, groups: u32) -> u32 {
+// The draw holds so many tiles more, and the grid their quarters. Returns how many tiles there were.
+fn lengthen(tiles: u32) -> u32 {
     if tiles == 0u {
         return 0u;
     }
-    let size = atomicAdd(&queue.groups, groups) + groups;
+    let before = atomicAdd(&tile_vertices[0], 6u * tiles) / 6u;
+    let size = QUARTERS * (before + tiles);
     atomicMax(&groups_of_tiles[0], min(size, ROW));
     atomicMax(&groups_of_tiles[1], (size + ROW - 1u) / ROW);
     atomicMax(&groups_of_tiles[2], 1u);
-    return atomicAdd(&tile_vertices[0], 6u * tiles) / 6u;
+    return before;
 }
 
 @compute @workgroup_size(GROUP)
@@ -73,7 +73,6 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     if lane == 0u {
         atomicStore(&group_references, 0u);
         atomicStore(&group_size, 0u);
-        atomicStore(&group_parts, 0u);
     }
     if lane < CLASSES {
         atomicStore(&class_sizes[lane], 0u);
@@ -107,12 +106,11 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         tile_places[own] = atomicAdd(&group_references, min(count, MOST / TILES));
         position = atomicAdd(&class_sizes[load_class], 1u);
         place_of_tile = atomicAdd(&group_size, 1u);
-        atomicAdd(&group_parts, parts_of(load_class));
     }
     workgroupBarrier();
     if lane == 0u {
         group_place = request(atomicLoad(&group_references));
-        group_tile = lengthen(atomicLoad(&group_size), atomicLoad(&group_parts));
+        group_tile = lengthen(atomicLoad(&group_size));
     }
     if lane < CLASSES && atomicLoad(&class_sizes[lane]) > 0u {
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));

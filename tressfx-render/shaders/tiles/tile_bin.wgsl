@@ -8,7 +8,7 @@ import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
 import package::segments::{ribbon_of, segment_at};
-import package::tiles::{IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
+import package::tiles::{FIRST_QUARTER, IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
 // Nearness of the scene, a tile.
 @group(0) @binding(6) var<storage, read> depths: array<f32>;
@@ -57,19 +57,44 @@ fn distances_of(nearness: vec2<f32>) -> vec2<f32> {
     return vec2(distance.x - margin.x, distance.y + margin.y);
 }
 
+// Rows that a ribbon may touch in columns: the first and the last, none where the last is before the first.
+fn rows_of(span: Span, columns: vec2<i32>) -> vec2<i32> {
+    if columns.x > columns.y {
+        return vec2(0, -1);
+    }
+    let middles = vec2(middle_of(span, columns.x), middle_of(span, columns.y));
+    let reach = span.half_height + PIXEL_MARGIN;
+    let first = max(i32(ceil(min(middles.x, middles.y) - reach)), 0);
+    return vec2(first, min(i32(floor(max(middles.x, middles.y) + reach)), span.size.y - 1));
+}
+
+// The quarters of the tile in a row of tiles that are touched by rows in the first and in the second half of its columns: bits of
+// a reference.
+fn quarters_of(span: Span, first: vec2<i32>, second: vec2<i32>, row: i32) -> u32 {
+    let edge = i32(TILE);
+    let begins = row * edge + vec4(0, edge / 2, 0, edge / 2);
+    let firsts = vec4(first.xx, second.xx);
+    let lasts = vec4(first.yy, second.yy);
+    let is_touched = vec4<u32>(firsts <= min(lasts, begins + edge / 2 - 1)) * vec4<u32>(lasts >= begins);
+    let places = select(vec4(0u, 2u, 1u, 3u), vec4(0u, 1u, 2u, 3u), span.steep);
+    let bits = is_touched << places;
+    return (bits.x | bits.y | bits.z | bits.w) * FIRST_QUARTER;
+}
+
 fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
     let edge = i32(TILE);
     let columns = vec2(max(span.first_column, tile_column * edge), min(span.last_column, tile_column * edge + edge - 1));
-    let middles = vec2(middle_of(span, columns.x), middle_of(span, columns.y));
-    let reach = span.half_height + PIXEL_MARGIN;
-    let first_row = max(i32(ceil(min(middles.x, middles.y) - reach)), 0);
-    let last_row = min(i32(floor(max(middles.x, middles.y) + reach)), span.size.y - 1);
-    if first_row > last_row {
+    let middle = tile_column * edge + edge / 2;
+    let first = rows_of(span, vec2(columns.x, min(columns.y, middle - 1)));
+    let second = rows_of(span, vec2(max(columns.x, middle), columns.y));
+    let rows = vec2(min(select(first.x, second.x, first.y < first.x), select(second.x, first.x, second.y < second.x)),
+                    max(first.y, second.y));
+    if rows.x > rows.y {
         return;
     }
     let nearness = range_of(ribbon, line, span, columns);
     let distances = distances_of(nearness);
-    for (var row = first_row / edge; row <= last_row / edge; row++) {
+    for (var row = rows.x / edge; row <= rows.y / edge; row++) {
         let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
         let tile = place.y * tile_columns() + place.x;
         if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
@@ -81,9 +106,10 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         }
         let begin = begin_of(nearests[tile]);
         let last = slice_of(begin, distances.y);
+        let reference = vertex | quarters_of(span, first, second, row);
         var flag = IS_NEAREST;
         for (var slice = slice_of(begin, distances.x); slice <= last; slice++) {
-            refer(slice * tile_count() + tile, vertex | flag);
+            refer(slice * tile_count() + tile, reference | flag);
             flag = 0u;
         }
     }

@@ -8,11 +8,14 @@ const TILE: u32 = 8u;
 const SLICES: u32 = 64u;
 // Kinds of tiles by the number of their references, the heaviest last.
 const CLASSES: u32 = 8u;
-// Tiles of this class and heavier ones are divided into 4 parts, each for a group: one alone would take too long.
-const CLASS_OF_4: u32 = 6u;
 const MAX_SECTIONS: u32 = 64u;
-// Set in a reference from the nearest slice that the segment touches in the tile. The other bits are the segment's first vertex.
+// Quarters of a tile, row by row: each is blended by a group.
+const QUARTERS: u32 = 4u;
+// Bits of a reference: whether it comes from the nearest slice that the segment touches in the tile; whether the segment touches
+// the first quarter of the tile, with those of the other quarters above; and the segment's first vertex.
 const IS_NEAREST: u32 = 0x80000000u;
+const FIRST_QUARTER: u32 = 0x08000000u;
+const VERTEX_MASK: u32 = 0x07ffffffu;
 
 struct TilesUniform {
     // Segments of all sections.
@@ -58,9 +61,7 @@ struct WaitingTile {
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
-    // Groups that all tiles ask for.
-    groups: atomic<u32>,
-    unused: array<u32, 2>,
+    unused: array<u32, 3>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
     tiles: array<WaitingTile>,
@@ -69,15 +70,9 @@ struct Queue {
 // The same where nothing is added any more.
 struct WaitingTiles {
     references: u32,
-    groups: u32,
-    unused: array<u32, 2>,
+    unused: array<u32, 3>,
     sizes: array<u32, CLASSES>,
     tiles: array<WaitingTile>,
-}
-
-// Parts of a tile.
-fn parts_of(load_class: u32) -> u32 {
-    return select(1u, 4u, load_class >= CLASS_OF_4);
 }
 
 fn tile_columns() -> u32 {

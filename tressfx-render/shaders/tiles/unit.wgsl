@@ -4,15 +4,15 @@ import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
 // Fragments that a group has room for.
-const ENTRIES: u32 = 868u;
+const ENTRIES: u32 = 256u;
 // Above all keys of fragments.
 const LAST_KEY: u32 = 0xffffffffu;
 // Of its room, what a unit should fill.
-const FILL: f32 = 0.8;
-// Fragments that a reference leaves in a tile, before anything is known.
-const FIRST_RATE: f32 = 4.0;
+const FILL: f32 = 0.75;
+// Fragments that a reference of the tile leaves in a quarter of it, before anything is known.
+const FIRST_RATE: f32 = 1.25;
 // However few fragments references leave, a unit has no more of them than ENTRIES / LEAST_RATE.
-const LEAST_RATE: f32 = 0.25;
+const LEAST_RATE: f32 = 0.0625;
 
 struct Unit {
     // The first slice, and the one after the last. All are done where the first is SLICES.
@@ -21,80 +21,87 @@ struct Unit {
     // The first key, and the one after the last.
     low: u32,
     high: u32,
+    // The references of the slices: the first, and the one after the last.
+    references: vec2<u32>,
     // Fragments that a reference left in the last unit.
     rate: f32,
     // 1 where fragments are blended as their mean.
     is_mean: u32,
 }
 
+// Distance at which the slices of the tile begin.
+var<workgroup> begin: f32;
 // Where the references of each slice of the tile begin, and where the last ones end.
 var<workgroup> bounds: array<u32, SLICES + 1u>;
 
-// As many slices from this one on as should fill the list.
-fn unit_from(first: u32, rate: f32) -> Unit {
-    let room = u32(FILL * f32(ENTRIES) / rate);
-    var end = first + 1u;
-    while end < SLICES && bounds[end + 1u] - bounds[first] <= room {
-        end++;
-    }
-    return Unit(first, end, 0u, LAST_KEY, rate, 0u);
-}
-
-fn first_key(begin: f32, slice: u32) -> u32 {
+// The first key of a slice. What lies before the first slice and behind the last belongs to them.
+fn first_key(slice: u32) -> u32 {
     if slice == 0u {
         return 0u;
     }
-    return depth_key(nearness_at(slice_distance(begin, slice)));
-}
-
-fn end_key(begin: f32, slice: u32) -> u32 {
-    if slice == SLICES - 1u {
+    if slice == SLICES {
         return LAST_KEY;
     }
-    return first_key(begin, slice + 1u);
+    return depth_key(max(nearness_at(slice_distance(begin, slice)), 0.0));
 }
 
-// The unit behind one that has been blended.
-fn behind(begin: f32, unit: Unit, rate: f32) -> Unit {
-    if unit.high == LAST_KEY {
-        return unit_from(unit.end, rate);
-    }
-    let step = unit.high - max(min(first_key(begin, unit.first), unit.high), unit.low);
-    let room = LAST_KEY - unit.high;
-    var high = unit.high + min(2u * min(step, LAST_KEY / 2u) + 1u, room);
-    if high >= end_key(begin, unit.first) {
-        high = LAST_KEY;
-    }
-    return Unit(unit.first, unit.end, unit.high, high, rate, 0u);
+fn unit_of(first: u32, end: u32, low: u32, high: u32, rate: f32) -> Unit {
+    return Unit(first, end, low, high, vec2(bounds[first], bounds[end]), rate, 0u);
 }
 
-// Half of a unit that had too many fragments.
-fn half_of(begin: f32, unit: Unit, rate: f32) -> Unit {
+// As many slices from this one on as should fill the list, at least one, and none from `most` on.
+fn unit_from(first: u32, most: u32, rate: f32) -> Unit {
+    if first == SLICES {
+        return Unit(SLICES, SLICES, 0u, 0u, vec2(0u), rate, 0u);
+    }
+    let room = u32(FILL * f32(ENTRIES) / rate);
+    var end = first + 1u;
+    var above = most + 1u;
+    while above - end > 1u {
+        let middle = (end + above) / 2u;
+        if bounds[middle] - bounds[first] <= room {
+            end = middle;
+        } else {
+            above = middle;
+        }
+    }
+    return unit_of(first, end, first_key(first), first_key(end), rate);
+}
+
+// The unit behind one in which `found` fragments were blended.
+fn behind(unit: Unit, found: u32, rate: f32) -> Unit {
+    let end = first_key(unit.end);
+    if unit.high >= end {
+        return unit_from(unit.end, SLICES, rate);
+    }
+    var keys = end - unit.high;
+    if unit.is_mean == 0u {
+        let growth = clamp(FILL * f32(ENTRIES) / f32(max(found, 1u)), 0.5, 4.0);
+        keys = min(u32(min(f32(unit.high - unit.low) * growth, 1e9)) + 1u, keys);
+    }
+    return unit_of(unit.first, unit.end, unit.high, unit.high + keys, rate);
+}
+
+// A part of a unit in which too many fragments were found, none of them outside of two keys.
+fn part_of(unit: Unit, found: u32, ends: vec2<u32>, rate: f32) -> Unit {
     if unit.end - unit.first > 1u {
-        return Unit(unit.first, unit.first + (unit.end - unit.first) / 2u, 0u, LAST_KEY, rate, 0u);
+        return unit_from(unit.first, unit.end - 1u, rate);
     }
-    if unit.high - unit.low <= 1u {
-        return Unit(unit.first, unit.end, unit.low, unit.high, rate, 1u);
-    }
-    var low = max(unit.low, first_key(begin, unit.first));
-    var high = min(unit.high, end_key(begin, unit.first));
-    if low >= high {
-        low = unit.low;
-        high = unit.high;
-    }
-    let middle = clamp(low + (high - low) / 2u, unit.low + 1u, unit.high - 1u);
-    return Unit(unit.first, unit.end, unit.low, middle, rate, 0u);
+    // Rounding must not leave it as large as it was.
+    let keys = min(u32(f32(ends.y - ends.x) * (FILL * f32(ENTRIES) / f32(found))), (ends.y - ends.x) / 2u);
+    var part = unit_of(unit.first, unit.end, ends.x, ends.x + keys + 1u, rate);
+    part.is_mean = u32(ends.x == ends.y);
+    return part;
 }
 
-// What comes after a unit in which so many fragments were found.
-fn next_unit(begin: f32, unit: Unit, found: u32) -> Unit {
+// What comes after a unit in which `found` fragments were found between two keys.
+fn next_unit(unit: Unit, found: u32, ends: vec2<u32>) -> Unit {
     var rate = unit.rate;
-    if unit.high == LAST_KEY && unit.low == 0u {
-        let references = bounds[unit.end] - bounds[unit.first];
-        rate = max(f32(found) / f32(max(references, 1u)), LEAST_RATE);
+    if unit.low == first_key(unit.first) && unit.high == first_key(unit.end) {
+        rate = max(f32(found) / f32(max(unit.references.y - unit.references.x, 1u)), LEAST_RATE);
     }
     if found > ENTRIES && unit.is_mean == 0u {
-        return half_of(begin, unit, rate);
+        return part_of(unit, found, ends, rate);
     }
-    return behind(begin, unit, rate);
+    return behind(unit, found, rate);
 }

@@ -13,7 +13,11 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<3, 16>([
+const LIBRARY: &[Module] = &with_shared::<7, 20>([
+    ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
+    ("front", include_str!("../../shaders/tiles/front.wgsl")),
+    ("mean", include_str!("../../shaders/tiles/mean.wgsl")),
+    ("quarter", include_str!("../../shaders/tiles/quarter.wgsl")),
     ("segments", include_str!("../../shaders/tiles/segments.wgsl")),
     ("tiles", include_str!("../../shaders/tiles/tiles.wgsl")),
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),

@@ -11,8 +11,8 @@ use crate::strands::SectionDraw;
 /// Sections that can be drawn together.
 pub(crate) const MAX_SECTIONS: usize = 64;
 
-/// Vertices that can be drawn together: a reference has 31 bits for one.
-const MAX_VERTICES: u64 = 1 << 31;
+/// Vertices that can be drawn together: a reference has 27 bits for one.
+const MAX_VERTICES: u64 = 1 << 27;
 
 /// Slices of depth.
 pub(crate) const SLICES: u32 = 64;

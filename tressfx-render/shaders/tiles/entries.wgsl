@@ -1,0 +1,104 @@
+// The fragments of a unit, in the memory of a group: found in any order, then sorted by pixel and depth.
+
+import package::fragment::{Fragment, pack_color};
+import package::quarter::PIXELS;
+import package::unit::ENTRIES;
+
+const LANES: u32 = 128u;
+// Bits of a place: an entry's number among those of its pixel, the pixel, and the entry that is there once entries are in the
+// order of pixels.
+const PIXEL_SHIFT: u32 = 10u;
+const ENTRY_SHIFT: u32 = 16u;
+
+// Fragments that were found in the unit, whether or not there was room for them.
+var<workgroup> total: atomic<u32>;
+// Depth; once sorted, the entry that is at this place.
+var<workgroup> keys: array<u32, ENTRIES>;
+var<workgroup> colors: array<vec2<u32>, ENTRIES>;
+var<workgroup> places: array<atomic<u32>, ENTRIES>;
+// The keys in the order of pixels.
+var<workgroup> keys_of_pixels: array<u32, ENTRIES>;
+var<workgroup> counts: array<atomic<u32>, PIXELS>;
+// Entries of the pixels before, and of all.
+var<workgroup> starts: array<u32, PIXELS + 1u>;
+// The nearest and the farthest key.
+var<workgroup> ends: array<atomic<u32>, 2>;
+
+// Forgets all entries.
+fn empty(lane: u32) {
+    if lane < PIXELS {
+        atomicStore(&counts[lane], 0u);
+    }
+    if lane == 0u {
+        atomicStore(&total, 0u);
+        atomicStore(&ends[0], 0xffffffffu);
+        atomicStore(&ends[1], 0u);
+    }
+}
+
+fn add(entry: u32, pixel: u32, key: u32, fragment: Fragment) {
+    if entry < ENTRIES {
+        keys[entry] = key;
+        colors[entry] = pack_color(fragment);
+        atomicStore(&places[entry], (pixel << PIXEL_SHIFT) | atomicAdd(&counts[pixel], 1u));
+    }
+}
+
+// Whether the first of two entries of one depth comes first. The order is total: what is the same in it gives the same picture in
+// any order.
+fn is_before(a: u32, b: u32) -> bool {
+    let first = colors[a];
+    let second = colors[b];
+    return first.x < second.x || (first.x == second.x && (first.y < second.y || (first.y == second.y && a < b)));
+}
+
+// How many of its pixel come before an entry.
+fn rank_of(entry: u32, pixel: u32, place: u32) -> u32 {
+    let key = keys_of_pixels[place];
+    let end = starts[pixel + 1u];
+    var rank = 0u;
+    for (var i = starts[pixel]; i < end; i++) {
+        let other = keys_of_pixels[i];
+        rank += u32(other < key);
+        if other == key && i != place {
+            rank += u32(is_before(atomicLoad(&places[i]) >> ENTRY_SHIFT, entry));
+        }
+    }
+    return rank;
+}
+
+// Puts the entries in order: behind it, `keys` holds entries. All lanes come here.
+fn sort(count: u32, lane: u32) {
+    if lane <= PIXELS {
+        var sum = 0u;
+        for (var i = 0u; i < lane; i++) {
+            sum += atomicLoad(&counts[i]);
+        }
+        starts[lane] = sum;
+    }
+    workgroupBarrier();
+    for (var entry = lane; entry < count; entry += LANES) {
+        let bits = atomicLoad(&places[entry]);
+        let place = starts[(bits >> PIXEL_SHIFT) % PIXELS] + extractBits(bits, 0u, PIXEL_SHIFT);
+        keys_of_pixels[place] = keys[entry];
+        atomicOr(&places[place], entry << ENTRY_SHIFT);
+    }
+    workgroupBarrier();
+    for (var entry = lane; entry < count; entry += LANES) {
+        let bits = atomicLoad(&places[entry]);
+        let pixel = (bits >> PIXEL_SHIFT) % PIXELS;
+        let rank = rank_of(entry, pixel, starts[pixel] + extractBits(bits, 0u, PIXEL_SHIFT));
+        keys[starts[pixel] + rank] = entry;
+    }
+    workgroupBarrier();
+}
+
+// The places of a pixel's entries: the first, and the one after the last.
+fn places_of(pixel: u32) -> vec2<u32> {
+    return vec2(starts[pixel], starts[pixel + 1u]);
+}
+
+// The colour at a place.
+fn color_at(place: u32) -> vec2<u32> {
+    return colors[keys[place]];
+}
