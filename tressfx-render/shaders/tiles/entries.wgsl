@@ -52,12 +52,11 @@ fn is_before(a: u32, b: u32) -> bool {
     return first.x < second.x || (first.x == second.x && (first.y < second.y || (first.y == second.y && a < b)));
 }
 
-// How many of its pixel come before an entry.
-fn rank_of(entry: u32, pixel: u32, place: u32) -> u32 {
+// How many of its pixel come before the entry at a place in the order of pixels.
+fn rank_of(entry: u32, place: u32, first: u32, end: u32) -> u32 {
     let key = keys_of_pixels[place];
-    let end = starts[pixel + 1u];
     var rank = 0u;
-    for (var i = starts[pixel]; i < end; i++) {
+    for (var i = first; i < end; i++) {
         let other = keys_of_pixels[i];
         rank += u32(other < key);
         if other == key && i != place {
@@ -84,11 +83,12 @@ fn sort(count: u32, lane: u32) {
         atomicOr(&places[place], entry << ENTRY_SHIFT);
     }
     workgroupBarrier();
-    for (var entry = lane; entry < count; entry += LANES) {
-        let bits = atomicLoad(&places[entry]);
-        let pixel = (bits >> PIXEL_SHIFT) % PIXELS;
-        let rank = rank_of(entry, pixel, starts[pixel] + extractBits(bits, 0u, PIXEL_SHIFT));
-        keys[starts[pixel] + rank] = entry;
+    // Lanes beside each other compare with the same keys.
+    for (var place = lane; place < count; place += LANES) {
+        let entry = atomicLoad(&places[place]) >> ENTRY_SHIFT;
+        let pixel = (atomicLoad(&places[entry]) >> PIXEL_SHIFT) % PIXELS;
+        let first = starts[pixel];
+        keys[first + rank_of(entry, place, first, starts[pixel + 1u])] = entry;
     }
     workgroupBarrier();
 }

@@ -54,9 +54,11 @@ var<workgroup> blended_fragments: atomic<u32>;
 
 // The work of a group: the heaviest tiles come first.
 fn job_of(group: u32) -> Job {
+    // All at once: none waits for another.
+    let sizes = queue.sizes;
     var rest = group / QUARTERS;
     for (var i = CLASSES; i > 0u; i--) {
-        let size = queue.sizes[i - 1u];
+        let size = sizes[i - 1u];
         if rest < size {
             let tile = queue.tiles[(i - 1u) * tile_count() + rest];
             return Job(tile, group % QUARTERS, u32(tile.first >= tiles.first && tile.first < tiles.end));
@@ -131,7 +133,7 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
     var found = vec2(LAST_KEY, 0u);
     for (var chunk = unit.references.x; chunk < unit.references.y; chunk += LANES * LOOKS) {
         var own_hits = 0u;
-        for (var i = 0u; i < LOOKS; i++) {
+        for (var i = 0u; i < LOOKS && chunk + i * LANES < unit.references.y; i++) {
             let place = chunk + i * LANES + lane;
             if place < unit.references.y && is_hit(unit, own.quarter, place, references[place]) {
                 own_hits |= 1u << i;
@@ -173,6 +175,11 @@ fn blend_sorted(front: Front, pixel: u32) -> Front {
 
 // Where the quarter begins, and what lies before it.
 fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
+    let pixel = pixel_at(corner, lane);
+    let is_inside = lane < PIXELS && all(pixel < view.size);
+    if is_inside {
+        scene[lane] = scene_nearness(pixel);
+    }
     for (var i = lane; i < SLICES; i += LANES) {
         bounds[i + 1u] = min(bins[i * tile_count() + own.tile.tile] - tiles.first, tiles.capacity);
     }
@@ -186,13 +193,11 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
         atomicStore(&blended_fragments, 0u);
     }
     workgroupBarrier();
-    let pixel = pixel_at(corner, lane);
     if lane < PIXELS {
         empty_mean(lane);
-        if all(pixel < view.size) {
-            scene[lane] = scene_nearness(pixel);
-            atomicOr(&open, 1u << lane);
-        }
+    }
+    if is_inside {
+        atomicOr(&open, 1u << lane);
     }
     if lane == 0u {
         plan = unit_from(0u, SLICES, FIRST_RATE);
@@ -211,6 +216,10 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         let found = atomicLoad(&total);
         let is_blended = unit.is_mean == 1u || found <= ENTRIES;
         sort(select(0u, found, is_blended && unit.is_mean == 0u), lane);
+        if lane == LANES - 1u {
+            // While others blend. The ends are known where there are too many fragments.
+            plan = next_unit(unit, found, vec2(atomicLoad(&ends[0]), atomicLoad(&ends[1])));
+        }
         if lane < PIXELS && is_blended {
             if unit.is_mean == 1u {
                 front = blend_mean(front, lane);
@@ -223,12 +232,8 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
             }
         }
         workgroupBarrier();
-        if lane == 0u {
-            // They are known where there are too many fragments.
-            plan = next_unit(unit, found, vec2(atomicLoad(&ends[0]), atomicLoad(&ends[1])));
-            if atomicLoad(&open) == 0u {
-                plan.first = SLICES;
-            }
+        if lane == 0u && atomicLoad(&open) == 0u {
+            plan.first = SLICES;
         }
         empty(lane);
     }
