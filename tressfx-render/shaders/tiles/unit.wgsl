@@ -34,6 +34,10 @@ var<workgroup> begin: f32;
 // Where the references of each slice of the tile begin, and where the last ones end.
 var<workgroup> bounds: array<u32, SLICES + 1u>;
 
+fn key_at(slice: u32) -> u32 {
+    return depth_key(max(nearness_at(slice_distance(begin, slice)), 0.0));
+}
+
 // The first key of a slice. What lies before the first slice and behind the last belongs to them.
 fn first_key(slice: u32) -> u32 {
     if slice == 0u {
@@ -42,7 +46,7 @@ fn first_key(slice: u32) -> u32 {
     if slice == SLICES {
         return LAST_KEY;
     }
-    return depth_key(max(nearness_at(slice_distance(begin, slice)), 0.0));
+    return key_at(slice);
 }
 
 fn unit_of(first: u32, end: u32, low: u32, high: u32, rate: f32) -> Unit {
@@ -65,7 +69,19 @@ fn unit_from(first: u32, most: u32, rate: f32) -> Unit {
             above = middle;
         }
     }
-    return unit_of(first, end, first_key(first), first_key(end), rate);
+    let unit = unit_of(first, end, first_key(first), first_key(end), rate);
+    let expected = rate * f32(unit.references.y - unit.references.x);
+    if end == first + 1u && expected > f32(ENTRIES) {
+        return beginning_of(unit, FILL * f32(ENTRIES) / expected);
+    }
+    return unit;
+}
+
+// A share of the keys of a slice.
+fn beginning_of(slice: Unit, share: f32) -> Unit {
+    let nearest = max(slice.low, key_at(slice.first));
+    let keys = u32(f32(max(key_at(slice.end), nearest) - nearest) * share);
+    return unit_of(slice.first, slice.end, slice.low, min(nearest + keys + 1u, slice.high), slice.rate);
 }
 
 // The unit behind one in which `found` fragments were blended.
