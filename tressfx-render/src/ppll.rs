@@ -16,7 +16,7 @@ use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::segments::{Fill, Segments};
-use crate::shaders::{GROUP, with_shared};
+use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{TechniqueInstance, check_k};
 use crate::views::BoundView;
@@ -27,7 +27,8 @@ pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 15>([
+const LIBRARY: &[Module] = &with_shared::<3, 16>([
+    PIXELS,
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);

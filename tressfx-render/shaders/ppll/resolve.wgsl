@@ -4,23 +4,14 @@
 // are sorted under a total order, and sums of integers know no order.
 
 import package::constants::K;
-import package::counters::Counters;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
+import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
 import package::sums::{FULL, mean_color, optical_depth, transmittance_of, weighted};
-import package::view::ViewUniform;
 
-@group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read_write> counters: Counters;
-// Premultiplied colour and alpha as four half floats, a pixel.
-@group(0) @binding(5) var<storage, read_write> resolved: array<vec2<u32>>;
-// Tiles of 8 x 8 pixels with hair.
-@group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
-// Six vertices for each of them: the arguments of a draw.
-@group(0) @binding(7) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
 // The sums of a tail have room for 131 thousand white fragments.
@@ -33,8 +24,6 @@ struct Tail {
     weight: u32,
     color: vec3<u32>,
 }
-
-var<workgroup> hairy: atomic<u32>;
 
 fn is_before(a: vec3<u32>, b: vec3<u32>) -> bool {
     return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
@@ -91,27 +80,13 @@ fn resolve_list(head: u32) -> vec4<f32> {
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
            @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if lane == 0u {
-        atomicStore(&hairy, 0u);
-    }
-    workgroupBarrier();
-    let inside = all(pixel.xy < view.size);
-    let index = pixel.y * view.size.x + pixel.x;
+    let inside = is_inside(pixel.xy);
+    let index = index_of(pixel.xy);
     var head = NOTHING;
     if inside {
         head = heads[index];
     }
-    if head != NOTHING {
-        atomicAdd(&hairy, 1u);
-    }
-    workgroupBarrier();
-    let count = atomicLoad(&hairy);
-    if lane == 0u {
-        atomicAdd(&counters.pixels_with_hair, count);
-        if count > 0u {
-            tiles[atomicAdd(&tile_vertices[0], 6u) / 6u] = group.y * groups.x + group.x;
-        }
-    }
+    let count = count_hairy(head != NOTHING, group.y * groups.x + group.x, lane);
     if lane == 0u && all(group.xy == vec2(0u)) {
         let wanted = atomicLoad(&counters.fragments);
         counters.wanted = wanted;
@@ -123,6 +98,6 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
         if head != NOTHING {
             color = resolve_list(head);
         }
-        resolved[index] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+        write_pixel(index, color);
     }
 }
