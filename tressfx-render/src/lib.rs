@@ -53,7 +53,7 @@ mod visibility;
 pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{K_RANGE, PpllDesc};
+pub use ppll::{K_RANGE, PpllDesc, Tail};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
 pub use segments::Fill;

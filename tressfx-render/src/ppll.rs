@@ -3,9 +3,10 @@
 mod fill;
 mod pool;
 mod resolve;
+mod tail;
 
 use tressfx_core::backend::{Backend, Format};
-use tressfx_core::error::{Need, Result};
+use tressfx_core::error::{Error, Label, Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::{Module, Specialization};
@@ -18,13 +19,17 @@ use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::{TechniqueInstance, check_k};
+use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::views::BoundView;
 use pool::NodePool;
+use resolve::{Resolve, Variant};
 
 #[cfg(test)]
 pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
+pub use tail::Tail;
+
+const LABEL: Label = "hair.render.ppll";
 
 /// What the kernels of this technique import.
 const LIBRARY: &[Module] = &with_shared::<3, 16>([
@@ -40,6 +45,8 @@ pub struct PpllDesc {
     /// How many of the nearest fragments of a pixel are put in order exactly; the rest is blended without order. In
     /// [`K_RANGE`].
     pub k: u32,
+    /// What is seen of the rest.
+    pub tail: Tail,
     /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
@@ -53,6 +60,12 @@ impl PpllDesc {
     #[must_use]
     pub fn k(self, k: u32) -> Self {
         Self { k, ..self }
+    }
+
+    /// The same with something else to be seen of the rest.
+    #[must_use]
+    pub fn tail(self, tail: Tail) -> Self {
+        Self { tail, ..self }
     }
 
     /// The same with room for at most so many bytes of fragments.
@@ -76,12 +89,17 @@ impl PpllDesc {
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
+
+    fn variant(&self) -> Variant {
+        Variant { k: self.k, tail: self.tail }
+    }
 }
 
 impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
-        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT, fill: Fill::Compute }
+        let (count_limit, fill) = (Self::COUNT_LIMIT, Fill::Compute);
+        Self { k: 8, tail: Tail::default(), max_node_bytes: 256 << 20, count_limit, fill }
     }
 }
 
@@ -97,7 +115,7 @@ pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
     fill: Segments,
-    resolve: resolve::Resolve,
+    resolve: Resolve,
     composite: Composite,
     pool: NodePool,
     resolved: Resolved,
@@ -105,13 +123,13 @@ pub(crate) struct Ppll {
 
 impl Ppll {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
-        check_k("hair.render.ppll", desc.k, &K_RANGE)?;
+        check_k(LABEL, desc.k, &K_RANGE)?;
         check(backend, size)?;
         Ok(Self {
             desc: *desc,
             size,
             fill: Segments::new(backend, desc.fill, &fill::SHADERS, &Specialization::new(), target)?,
-            resolve: resolve::Resolve::new(backend, desc.k)?,
+            resolve: Resolve::new(backend, desc.variant())?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
             resolved: Resolved::new(backend, size)?,
@@ -126,7 +144,7 @@ impl Ppll {
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
-        [self.fill.shader(), &self.resolve.kernel.shader, &self.composite.pipeline.shader]
+        [self.fill.shader(), &self.resolve.kernel().shader, &self.composite.pipeline.shader]
     }
 }
 
@@ -152,6 +170,18 @@ impl TechniqueInstance for Ppll {
         grown
     }
 
+    fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill);
+        let Technique::Ppll(desc) = technique else { return Err(another_technique(LABEL)) };
+        check_k(LABEL, desc.k, &K_RANGE)?;
+        if fixed(desc) != fixed(&self.desc) {
+            return Err(Error::rule(LABEL, "what is not `k` or `tail` needs a new renderer".to_owned()));
+        }
+        self.resolve.change(backend, desc.variant())?;
+        self.desc = *desc;
+        Ok(())
+    }
+
     fn capacity(&self) -> u32 {
         self.pool.capacity
     }
@@ -169,7 +199,7 @@ impl TechniqueInstance for Ppll {
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.begin(list, views, groups);
+        self.pool.begin(list, views, groups, tail::unlit(draws));
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {

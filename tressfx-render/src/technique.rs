@@ -52,6 +52,9 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
         Ok(())
     }
 
+    /// Changes what can be changed from frame to frame.
+    fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()>;
+
     /// How much the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
 
@@ -71,6 +74,11 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
 
     /// Writes the passes of a view.
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()>;
+}
+
+/// What an instance says that is told to be another technique, or to change what it cannot.
+pub(crate) fn another_technique(label: Label) -> Error {
+    Error::rule(label, "another technique needs a new renderer".to_owned())
 }
 
 /// Whether a technique takes `k` fragments of a pixel.

@@ -20,7 +20,7 @@ use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::check_pixels;
 use crate::strands::SectionDraw;
-use crate::technique::TechniqueInstance;
+use crate::technique::{Technique, TechniqueInstance, another_technique};
 use crate::views::BoundView;
 use kernels::Kernels;
 use layout::Layout;
@@ -124,6 +124,15 @@ impl TechniqueInstance for Tiles {
         let grown = self.memory.grow_vertices(backend, layout::vertices(draws));
         self.forget_bindings();
         grown
+    }
+
+    fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        let Technique::Tiles(desc) = technique else { return Err(another_technique("hair.render.tiles")) };
+        if desc.max_reference_bytes != self.desc.max_reference_bytes {
+            return Err(Error::rule("hair.render.tiles", "another limit of memory needs a new renderer".to_owned()));
+        }
+        self.desc = *desc;
+        Ok(())
     }
 
     fn capacity(&self) -> u32 {

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Technique, TilesDesc};
+use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -14,6 +14,9 @@ pub(crate) struct Oit {
     /// The nearest fragments of a pixel that are sorted; without it, the default of the technique
     #[arg(long, value_name = "K")]
     oit_k: Option<u32>,
+    /// With `--oit ppll`: what is seen of the fragments behind the K nearest; `shaded` by default
+    #[arg(long, value_enum)]
+    oit_tail: Option<TailName>,
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
@@ -40,8 +43,28 @@ impl FillName {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TailName {
+    /// Their mean colour, and their opacity
+    Shaded,
+    /// The colour of hair without light, and their opacity
+    Unshaded,
+    /// Nothing
+    None,
+}
+
+impl TailName {
+    fn tail(self) -> Tail {
+        match self {
+            Self::Shaded => Tail::Shaded,
+            Self::Unshaded => Tail::Unshaded,
+            Self::None => Tail::None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum OitName {
-    /// A list of fragments for each pixel (K from 1 to 16, 8 by default)
+    /// A list of fragments for each pixel (K from 0 to 32, 8 by default)
     Ppll,
     /// Layers of the nearest fragments of each pixel, in little memory (K from 1 to 8, 3 by default)
     Shortcut,
@@ -60,9 +83,12 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
+        if self.oit_tail.is_some() && self.oit != OitName::Ppll {
+            bail!("--oit-tail belongs to --oit ppll");
+        }
         match self.oit {
             OitName::Ppll => {
-                let desc = PpllDesc::default();
+                let desc = PpllDesc::default().tail(self.oit_tail.map_or(Tail::Shaded, TailName::tail));
                 Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
             }
             OitName::Shortcut => {

@@ -14,6 +14,8 @@ struct PoolUniform {
     // limit then, so that the counter stays below 2 * limit whatever happens, and never wraps.
     small_request: u32,
     unused: u32,
+    // The colour of a tail that is not shaded.
+    unlit: vec4<f32>,
 }
 
 fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {

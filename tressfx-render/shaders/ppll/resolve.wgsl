@@ -1,4 +1,5 @@
-// The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest is summed up in integers.
+// The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest, its tail, is summed up in
+// integers: with its colours, or, unshaded, with its opacities alone, or not at all.
 //
 // The order of a list changes from run to run with the order of the atomics; the result does not, to the bit: fragments
 // are sorted under a total order, and sums of integers know no order.
@@ -7,12 +8,17 @@ import package::constants::K;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
 import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
-import package::sums::{FULL, mean_color, optical_depth, transmittance_of, weighted};
+import package::sums::{FULL, optical_depth, transmittance_of};
+
+@if(shaded)
+import package::sums::{mean_color, weighted};
 
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
 
+// An array has at least one element, and the one of K = 0 is never looked at.
+const ROOM: u32 = max(K, 1u);
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
 // The sums of a tail have room for 131 thousand white fragments.
 const UNIT: f32 = 16384.0;
@@ -33,10 +39,18 @@ fn add(tail: ptr<function, Tail>, node: vec3<u32>) {
     let alpha = packed_alpha(node.yz);
     (*tail).optical = min((*tail).optical + optical_depth(alpha), FULL);
     (*tail).weight = min((*tail).weight + alpha, FULL);
-    (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
+    @if(shaded) {
+        (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
+    }
 }
 
-fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
+// The colour of a tail with a weight.
+fn tail_color(tail: Tail) -> vec3<f32> {
+    @if(shaded) { return mean_color(tail.color, tail.weight, UNIT); }
+    @if(!shaded) { return pool.unlit.rgb; }
+}
+
+fn over(nearest: ptr<function, array<vec3<u32>, ROOM>>, tail: Tail) -> vec4<f32> {
     var color = vec3(0.0);
     var transmittance = 1.0;
     for (var i = 0u; i < K; i++) {
@@ -46,15 +60,15 @@ fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
     }
     if tail.weight > 0u {
         let behind = transmittance * transmittance_of(tail.optical);
-        color += (transmittance - behind) * mean_color(tail.color, tail.weight, UNIT);
+        color += (transmittance - behind) * tail_color(tail);
         transmittance = behind;
     }
     return vec4(color, 1.0 - transmittance);
 }
 
 fn resolve_list(head: u32) -> vec4<f32> {
-    var nearest: array<vec3<u32>, K>;
-    for (var i = 0u; i < K; i++) {
+    var nearest: array<vec3<u32>, ROOM>;
+    for (var i = 0u; i < ROOM; i++) {
         nearest[i] = FAR;
     }
     var tail: Tail;
@@ -63,7 +77,7 @@ fn resolve_list(head: u32) -> vec4<f32> {
         let node = nodes[next - 1u];
         next = node.w;
         var passed = node.xyz;
-        if is_before(passed, nearest[K - 1u]) {
+        if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             // The last one falls out, and those behind the new one move up.
             for (var i = 0u; i < K; i++) {
                 let held = nearest[i];
@@ -72,7 +86,7 @@ fn resolve_list(head: u32) -> vec4<f32> {
                 passed = select(passed, held, first);
             }
         }
-        add(&tail, passed);
+        @if(shaded || unshaded) { add(&tail, passed); }
     }
     return over(&nearest, tail);
 }

@@ -26,6 +26,8 @@ gpu_struct! {
         pub small_request: u32,
         /// Nothing.
         pub unused: u32,
+        /// The colour of a tail that is not shaded.
+        pub unlit: [f32; 4],
     }
 }
 
@@ -78,13 +80,15 @@ impl NodePool {
         Ok(())
     }
 
-    /// Sets the counters of views to zero, and says what the limits are when so many groups ask for room.
-    pub(crate) fn begin(&self, list: &mut PassList, views: usize, groups: u64) {
+    /// Sets the counters of views to zero, and says what the limits are when so many groups ask for room, and what colour a tail
+    /// has that is not shaded.
+    pub(crate) fn begin(&self, list: &mut PassList, views: usize, groups: u64, unlit: [f32; 4]) {
         let uniform = PoolUniform {
             capacity: self.capacity,
             limit: self.count_limit,
             small_request: (u64::from(self.count_limit) / groups.max(1)) as u32,
             unused: 0,
+            unlit,
         };
         list.upload(self.uniform, 0, &[uniform]);
         self.counters.clear(list, views);
