@@ -4,6 +4,7 @@
 //! ```text
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
+//! hair.render.nearest           compute  one thread a strand segment: the K nearest, where lists are bounded Technique::Ppll
 //! hair.render.fill              compute  one thread a strand segment: its fragments into the pixels' lists  Technique::Ppll
 //! hair.render.resolve           compute  one thread a pixel: the K nearest sorted, the rest summed up       Technique::Ppll
 //!

@@ -1,6 +1,8 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
+mod bounded;
 mod fill;
+mod nearest;
 mod pool;
 mod resolve;
 mod tail;
@@ -9,18 +11,20 @@ use tressfx_core::backend::{Backend, Format};
 use tressfx_core::error::{Error, Label, Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Module, Specialization};
+use tressfx_core::shader::{Kernel, Module};
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::counters::Counters;
 use crate::predict;
-use crate::renderer::Targets;
+use crate::renderer::{Targets, with_headroom};
 use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::views::BoundView;
+use bounded::{Bounded, Prepared};
 use pool::NodePool;
 use resolve::{Resolve, Variant};
 
@@ -32,9 +36,11 @@ pub use tail::Tail;
 const LABEL: Label = "hair.render.ppll";
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<3, 16>([
+const LIBRARY: &[Module] = &with_shared::<5, 18>([
     PIXELS,
+    ("kept", include_str!("../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../shaders/ppll/node.wgsl")),
+    ("rest", include_str!("../shaders/ppll/rest.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
 
@@ -47,6 +53,11 @@ pub struct PpllDesc {
     pub k: u32,
     /// What is seen of the rest.
     pub tail: Tail,
+    /// How many fragments of a pixel may take memory; `None` for all. The nearest do, the others are merged as they come: the
+    /// opacity of the pixel is the same, and from `k` on the whole picture. The memory is bounded then, and takes 20 bytes and
+    /// 4 for each of the nearest a pixel, and a third walk over the strands. Lists become so by themselves where there would be
+    /// more fragments than there may be room for.
+    pub cap: Option<u32>,
     /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
@@ -66,6 +77,12 @@ impl PpllDesc {
     #[must_use]
     pub fn tail(self, tail: Tail) -> Self {
         Self { tail, ..self }
+    }
+
+    /// The same with memory for so many fragments of a pixel.
+    #[must_use]
+    pub fn cap(self, cap: impl Into<Option<u32>>) -> Self {
+        Self { cap: cap.into(), ..self }
     }
 
     /// The same with room for at most so many bytes of fragments.
@@ -90,8 +107,13 @@ impl PpllDesc {
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
 
-    fn variant(&self) -> Variant {
-        Variant { k: self.k, tail: self.tail }
+    /// How many fragments of a pixel have nodes where lists are bounded: more would not change the picture.
+    fn asked(&self) -> u32 {
+        self.cap.unwrap_or(self.k).min(self.k)
+    }
+
+    fn variant(&self, bounded: bool) -> Variant {
+        Variant { k: self.k, tail: self.tail, bounded }
     }
 }
 
@@ -99,7 +121,7 @@ impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
         let (count_limit, fill) = (Self::COUNT_LIMIT, Fill::Compute);
-        Self { k: 8, tail: Tail::default(), max_node_bytes: 256 << 20, count_limit, fill }
+        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill }
     }
 }
 
@@ -114,10 +136,14 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
+    target: Format,
     fill: Segments,
     resolve: Resolve,
     composite: Composite,
     pool: NodePool,
+    bounded: Bounded,
+    /// Where lists are bounded: how many fragments of a pixel have nodes.
+    kept: u32,
     resolved: Resolved,
 }
 
@@ -125,19 +151,47 @@ impl Ppll {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
         check_k(LABEL, desc.k, &K_RANGE)?;
         check(backend, size)?;
-        Ok(Self {
+        let mut made = Self {
             desc: *desc,
             size,
-            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &Specialization::new(), target)?,
-            resolve: Resolve::new(backend, desc.variant())?,
+            target,
+            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false), target)?,
+            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some()))?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
+            bounded: Bounded::default(),
+            kept: 0,
             resolved: Resolved::new(backend, size)?,
-        })
+        };
+        if desc.cap.is_some() {
+            let prepared = made.prepare(backend, desc)?;
+            made.bound(backend, desc, prepared);
+        }
+        Ok(made)
+    }
+
+    /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
+    fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
+        let kernel = self.resolve.prepare(backend, desc.variant(true))?;
+        Ok((kernel, self.bounded.prepare(backend, self.size, desc.asked(), desc.fill, self.target)?))
+    }
+
+    /// Does so.
+    fn bound(&mut self, backend: &mut dyn Backend, desc: &PpllDesc, (kernel, prepared): (Option<Kernel>, Prepared)) {
+        self.resolve.change(desc.variant(true), kernel);
+        self.bounded.turn_on(backend, prepared);
+        self.kept = desc.asked();
+        self.forget_bindings();
+    }
+
+    /// Whether the device can bound lists by itself.
+    fn can_bound(&self, backend: &dyn Backend) -> bool {
+        bounded::check(backend, self.size, self.desc.asked()).is_ok()
     }
 
     fn forget_bindings(&mut self) {
         self.fill.forget_bindings();
+        self.bounded.forget_bindings();
         self.resolve.bound.clear();
         self.composite.bound.clear();
     }
@@ -153,6 +207,11 @@ impl TechniqueInstance for Ppll {
         check(backend, size)?;
         let pool = NodePool::new(backend, size, &self.desc)?;
         let resolved = Resolved::new(backend, size)?;
+        let bounded = &self.bounded;
+        let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.target);
+        if let Some(prepared) = bounded.is_on().then(prepare).transpose()? {
+            self.bounded.turn_on(backend, prepared);
+        }
         std::mem::replace(&mut self.pool, pool).destroy(backend);
         std::mem::replace(&mut self.resolved, resolved).destroy(backend);
         self.size = size;
@@ -165,9 +224,33 @@ impl TechniqueInstance for Ppll {
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
-        let grown = self.pool.grow(backend, fragments);
+        let desc = self.desc;
+        let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
+        let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
+        let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most))? {
+            self.pool.replace(backend, nodes);
+        }
+        if let Some(prepared) = prepared {
+            self.bound(backend, &desc, prepared);
+        }
         self.forget_bindings();
-        grown
+        Ok(())
+    }
+
+    /// Where even the nearest have too little room, fewer of a pixel are kept: which of them find room would depend on the order
+    /// in which they come.
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        if counters.wanted <= self.pool.capacity {
+            return Ok(false);
+        }
+        let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
+        self.reserve(backend, counters.wanted.into())?;
+        if before.1 && counters.wanted > self.pool.largest {
+            let fits = self.pool.largest / counters.pixels_with_hair.max(1);
+            self.kept = fits.min(self.kept.saturating_sub(1));
+        }
+        Ok((self.pool.capacity, self.bounded.is_on(), self.kept) != before)
     }
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
@@ -175,9 +258,20 @@ impl TechniqueInstance for Ppll {
         let Technique::Ppll(desc) = technique else { return Err(another_technique(LABEL)) };
         check_k(LABEL, desc.k, &K_RANGE)?;
         if fixed(desc) != fixed(&self.desc) {
-            return Err(Error::rule(LABEL, "what is not `k` or `tail` needs a new renderer".to_owned()));
+            return Err(Error::rule(LABEL, "what is not `k`, `tail` or `cap` needs a new renderer".to_owned()));
         }
-        self.resolve.change(backend, desc.variant())?;
+        let was_capped = self.desc.cap.is_some();
+        let stays = self.bounded.is_on() && (desc.cap.is_some() || !was_capped);
+        if stays && self.bounded.asked() == desc.asked() || !stays && desc.cap.is_none() {
+            let kernel = self.resolve.prepare(backend, desc.variant(stays))?;
+            self.resolve.change(desc.variant(stays), kernel);
+            if !stays {
+                self.bounded.turn_off(backend);
+            }
+        } else {
+            let prepared = self.prepare(backend, desc)?;
+            self.bound(backend, desc, prepared);
+        }
         self.desc = *desc;
         Ok(())
     }
@@ -187,7 +281,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn bytes(&self) -> u64 {
-        self.pool.bytes(self.size) + Resolved::bytes(self.size)
+        self.pool.bytes(self.size) + self.bounded.bytes() + Resolved::bytes(self.size)
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
@@ -196,17 +290,30 @@ impl TechniqueInstance for Ppll {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.fill.begin_frame();
+        self.bounded.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
+        self.pool.begin(list, views);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.begin(list, views, groups, tail::unlit(draws));
+        self.pool.upload(list, groups, [self.kept, self.desc.asked()], tail::unlit(draws));
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
         self.resolved.clear(list);
-        self.fill.passes(list, view, draws, targets, &self.pool.bindings(view))?;
-        self.resolve.pass(list, view, &self.pool, &self.resolved)?;
+        let own = self.pool.bindings(view);
+        match self.bounded.passes() {
+            None => self.fill.passes(list, view, draws, targets, &own)?,
+            Some(passes) => {
+                passes.clear(list, view.size, self.kept);
+                if self.kept > 0 {
+                    passes.nearest.passes(list, view, draws, targets, &[own[0], passes.keys])?;
+                }
+                let own = [&own[..], &[passes.keys, passes.rest]].concat();
+                passes.fill.passes(list, view, draws, targets, &own)?;
+            }
+        }
+        self.resolve.pass(list, view, &self.pool, &self.resolved, self.bounded.rest())?;
         self.composite.pass(list, view, &self.resolved, targets.color)
     }
 }

@@ -16,6 +16,11 @@ use crate::views::{MAX_VIEWS, ViewDraw, Views};
 /// The pool is made this many times as large as predicted or measured, since the next frame may need more.
 pub(crate) const HEADROOM: f64 = 1.25;
 
+/// What a pool is made for that has to hold this much.
+pub(crate) fn with_headroom(wanted: u64) -> u64 {
+    (wanted as f64 * HEADROOM) as u64
+}
+
 /// Describes a renderer that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -87,8 +92,8 @@ pub enum DrawError {
 
 /// Draws hair: strands are shaded for a view and turned into fragments, which a [`Technique`] sorts and blends.
 ///
-/// The same strands and view give exactly the same picture, bit for bit, as long as no fragment is dropped. Which fragments
-/// are dropped when the pool is full depends on the GPU.
+/// The same strands and view give exactly the same picture, bit for bit, as long as all that is to be kept finds room. What does not
+/// find room, before the renderer has measured how much there is, depends on the GPU.
 #[derive(Debug)]
 pub struct HairRenderer {
     desc: RenderDesc,
@@ -117,7 +122,7 @@ impl HairRenderer {
         &self.desc
     }
 
-    /// Changes settings of the technique between frames: `k` and `tail` of lists, `closed_below` of tiles. A kernel that was not
+    /// Changes settings of the technique between frames: `k`, `tail` and `cap` of lists, `closed_below` of tiles. A kernel that was not
     /// used before is compiled, and kept. Lists that were written before stay valid.
     ///
     /// # Errors
@@ -162,7 +167,7 @@ impl HairRenderer {
             return Ok(());
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
-        let wanted = (self.order.predicted(view, &draws) * HEADROOM) as u64;
+        let wanted = self.order.predicted(view, &draws) as u64;
         self.owner.change(backend, |backend| {
             self.order.reserve_vertices(backend, &draws)?;
             self.order.reserve(backend, wanted)
@@ -170,16 +175,15 @@ impl HairRenderer {
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
-    /// are those that [`HairRenderer::request_counters`] has brought back.
+    /// are those that [`HairRenderer::request_counters`] has brought back. Lists that would need more than their limit hold the
+    /// nearest fragments of each pixel from then on, and merge the others, see [`PpllDesc::cap`](crate::PpllDesc::cap).
+    ///
+    /// Returns whether the same frame would now find more room.
     ///
     /// # Errors
     /// As [`HairRenderer::grow_to_predicted`].
-    pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
-        if counters.wanted <= self.capacity() {
-            return Ok(());
-        }
-        let wanted = (f64::from(counters.wanted) * HEADROOM) as u64;
-        self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
+    pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        self.owner.change(backend, |backend| self.order.measured(backend, counters))
     }
 
     /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is

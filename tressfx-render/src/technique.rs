@@ -9,6 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
+use crate::counters::Counters;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
 use crate::shortcut::{ShortCut, ShortCutDesc};
@@ -44,8 +45,17 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
 
-    /// Enlarges the pool to at least this much, up to its limit.
+    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit.
     fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()>;
+
+    /// Makes room for what a view has needed. Returns whether there is another room than before.
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        let before = self.capacity();
+        if counters.wanted > before {
+            self.reserve(backend, counters.wanted.into())?;
+        }
+        Ok(self.capacity() > before)
+    }
 
     /// Makes room for the vertices of sections, where the technique keeps any.
     fn reserve_vertices(&mut self, _: &mut dyn Backend, _: &[SectionDraw]) -> Result<()> {

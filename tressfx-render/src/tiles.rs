@@ -17,7 +17,7 @@ use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::predict;
-use crate::renderer::Targets;
+use crate::renderer::{Targets, with_headroom};
 use crate::resolved::check_pixels;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, another_technique};
@@ -115,7 +115,7 @@ impl TechniqueInstance for Tiles {
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {
-        let grown = self.memory.grow_references(backend, references);
+        let grown = self.memory.grow_references(backend, with_headroom(references));
         self.forget_bindings();
         grown
     }

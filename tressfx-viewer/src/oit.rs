@@ -17,6 +17,12 @@ pub(crate) struct Oit {
     /// With `--oit ppll`: what is seen of the fragments behind the K nearest; `shaded` by default
     #[arg(long, value_enum)]
     oit_tail: Option<TailName>,
+    /// With `--oit ppll`: fragments of a pixel that take memory, the nearest; the others are merged. Without it, all
+    #[arg(long, value_name = "N")]
+    oit_cap: Option<u32>,
+    /// With `--oit ppll`: bytes that the lists may take, 16 a fragment. Without it, 256 MiB
+    #[arg(long, value_name = "BYTES")]
+    oit_bytes: Option<u64>,
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
@@ -83,12 +89,18 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
-        if self.oit_tail.is_some() && self.oit != OitName::Ppll {
-            bail!("--oit-tail belongs to --oit ppll");
+        let of_lists =
+            [("tail", self.oit_tail.is_some()), ("cap", self.oit_cap.is_some()), ("bytes", self.oit_bytes.is_some())];
+        for (name, is_given) in of_lists {
+            if is_given && self.oit != OitName::Ppll {
+                bail!("--oit-{name} belongs to --oit ppll");
+            }
         }
         match self.oit {
             OitName::Ppll => {
-                let desc = PpllDesc::default().tail(self.oit_tail.map_or(Tail::Shaded, TailName::tail));
+                let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
+                let desc = PpllDesc::default().tail(tail).cap(self.oit_cap);
+                let desc = desc.max_node_bytes(self.oit_bytes.unwrap_or(desc.max_node_bytes));
                 Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
             }
             OitName::Shortcut => {

@@ -1,5 +1,6 @@
 // The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest, its tail, is summed up in
-// integers: with its colours, or, unshaded, with its opacities alone, or not at all.
+// integers: with its colours, or, unshaded, with its opacities alone, or not at all. Where lists are bounded, the rest that has
+// no nodes begins the tail.
 //
 // The order of a list changes from run to run with the order of the atomics; the result does not, to the bit: fragments
 // are sorted under a total order, and sums of integers know no order.
@@ -8,6 +9,7 @@ import package::constants::K;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
 import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
+import package::rest::{SUMS, UNIT};
 import package::sums::{FULL, optical_depth, transmittance_of};
 
 @if(shaded)
@@ -16,12 +18,12 @@ import package::sums::{mean_color, weighted};
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
+@if(bounded)
+@group(0) @binding(8) var<storage, read> rest: array<u32>;
 
 // An array has at least one element, and the one of K = 0 is never looked at.
 const ROOM: u32 = max(K, 1u);
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
-// The sums of a tail have room for 131 thousand white fragments.
-const UNIT: f32 = 16384.0;
 
 // What lies behind the K nearest.
 struct Tail {
@@ -66,12 +68,25 @@ fn over(nearest: ptr<function, array<vec3<u32>, ROOM>>, tail: Tail) -> vec4<f32>
     return vec4(color, 1.0 - transmittance);
 }
 
-fn resolve_list(head: u32) -> vec4<f32> {
+// What the fragments of a pixel without nodes have left.
+fn rest_of(index: u32) -> Tail {
+    var tail: Tail;
+    @if(bounded) {
+        let first = SUMS * index;
+        tail.optical = min(rest[first], FULL);
+        tail.weight = min(rest[first + 1u], FULL);
+        tail.color = min(vec3(rest[first + 2u], rest[first + 3u], rest[first + 4u]), vec3(FULL));
+    }
+    return tail;
+}
+
+fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     var nearest: array<vec3<u32>, ROOM>;
     for (var i = 0u; i < ROOM; i++) {
         nearest[i] = FAR;
     }
     var tail: Tail;
+    @if(shaded || unshaded) { tail = behind; }
     var next = head;
     while next != NOTHING {
         let node = nodes[next - 1u];
@@ -91,26 +106,41 @@ fn resolve_list(head: u32) -> vec4<f32> {
     return over(&nearest, tail);
 }
 
+// What the whole view has left: one thread comes here.
+fn count_fragments() {
+    let wanted = atomicLoad(&counters.fragments);
+    let without_node = max(wanted, pool.capacity) - pool.capacity;
+    counters.wanted = wanted;
+    counters.saturated = u32(wanted >= pool.limit);
+    @if(!bounded) { atomicStore(&counters.dropped, without_node); }
+    @if(bounded) {
+        let behind = atomicLoad(&counters.merged);
+        counters.saturated = u32(wanted >= pool.limit || behind > FULL);
+        atomicStore(&counters.fragments, min(wanted, FULL) + min(behind, FULL));
+        atomicStore(&counters.merged, without_node + select(0u, min(behind, FULL), pool.kept < pool.asked));
+    }
+}
+
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
            @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let inside = is_inside(pixel.xy);
     let index = index_of(pixel.xy);
     var head = NOTHING;
+    var behind: Tail;
     if inside {
         head = heads[index];
+        behind = rest_of(index);
     }
-    let count = count_hairy(head != NOTHING, group.y * groups.x + group.x, lane);
+    let has_hair = head != NOTHING || behind.weight > 0u;
+    let count = count_hairy(has_hair, group.y * groups.x + group.x, lane);
     if lane == 0u && all(group.xy == vec2(0u)) {
-        let wanted = atomicLoad(&counters.fragments);
-        counters.wanted = wanted;
-        atomicStore(&counters.dropped, max(wanted, pool.capacity) - pool.capacity);
-        counters.saturated = u32(wanted >= pool.limit);
+        count_fragments();
     }
     if inside && count > 0u {
         var color = vec4(0.0);
-        if head != NOTHING {
-            color = resolve_list(head);
+        if has_hair {
+            color = resolve_list(head, behind);
         }
         write_pixel(index, color);
     }

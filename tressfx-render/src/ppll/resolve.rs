@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Kernel, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Specialization};
 
 use super::pool::NodePool;
 use super::{LIBRARY, Tail};
@@ -23,6 +23,8 @@ pub const K_RANGE: RangeInclusive<u32> = 0..=32;
 pub(crate) struct Variant {
     pub(crate) k: u32,
     pub(crate) tail: Tail,
+    /// Whether there is a rest of fragments without nodes.
+    pub(crate) bounded: bool,
 }
 
 impl Variant {
@@ -30,6 +32,7 @@ impl Variant {
         Specialization::new()
             .feature("shaded", self.tail == Tail::Shaded)
             .feature("unshaded", self.tail == Tail::Unshaded)
+            .feature("bounded", self.bounded)
             .constant("K", self.k)
     }
 }
@@ -48,13 +51,17 @@ impl Resolve {
         Ok(Self { kernels, variant, bound: Bound::new() })
     }
 
-    /// Uses a variant from now on. It is compiled when it is first used.
-    pub(crate) fn change(&mut self, backend: &mut dyn Backend, variant: Variant) -> Result<()> {
-        if !self.kernels.contains_key(&variant) {
-            self.kernels.insert(variant, kernel(backend, variant)?);
+    /// Compiles a variant, unless it was before.
+    pub(crate) fn prepare(&self, backend: &mut dyn Backend, variant: Variant) -> Result<Option<Kernel>> {
+        if self.kernels.contains_key(&variant) { Ok(None) } else { kernel(backend, variant).map(Some) }
+    }
+
+    /// Uses a variant from now on, and keeps what was prepared for it.
+    pub(crate) fn change(&mut self, variant: Variant, prepared: Option<Kernel>) {
+        if let Some(kernel) = prepared {
+            self.kernels.insert(variant, kernel);
         }
         self.variant = variant;
-        Ok(())
     }
 
     /// The one that is in use.
@@ -69,11 +76,12 @@ impl Resolve {
         view: &BoundView,
         pool: &NodePool,
         resolved: &Resolved,
+        rest: Option<(&'static str, Binding)>,
     ) -> Result<()> {
         let Self { kernels, variant, bound } = self;
         let kernel = &kernels[variant];
         let bindings = bound.get((view.index, *variant), || {
-            kernel.bind(&[
+            let own = [
                 ("view", view.uniform),
                 ("pool", pool.uniform.into()),
                 ("heads", pool.heads.into()),
@@ -82,7 +90,8 @@ impl Resolve {
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
                 ("tile_vertices", resolved.draw.into()),
-            ])
+            ];
+            kernel.bind(&own.into_iter().chain(rest).collect::<Vec<_>>())
         })?;
         list.compute(kernel, &bindings, Grid::for_image(view.size, TILE));
         Ok(())
