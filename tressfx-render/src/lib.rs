@@ -48,6 +48,7 @@ mod strands;
 mod technique;
 mod tiles;
 pub mod uniforms;
+mod usage;
 mod views;
 mod visibility;
 

@@ -23,6 +23,7 @@ use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
+use crate::usage::Usage;
 use crate::views::BoundView;
 use bounded::{Bounded, Prepared};
 use pool::NodePool;
@@ -144,6 +145,12 @@ pub(crate) struct Ppll {
     bounded: Bounded,
     /// Where lists are bounded: how many fragments of a pixel have nodes.
     kept: u32,
+    /// Where lists were bounded because of a prediction: views that are still to be measured, and the most fragments of those that
+    /// were.
+    unproven: Option<(usize, u64)>,
+    views: usize,
+    /// Fragments, nodes, pixels with hair.
+    usage: Usage<3>,
     resolved: Resolved,
 }
 
@@ -161,6 +168,9 @@ impl Ppll {
             pool: NodePool::new(backend, size, desc)?,
             bounded: Bounded::default(),
             kept: 0,
+            unproven: None,
+            views: 1,
+            usage: Usage::new(),
             resolved: Resolved::new(backend, size)?,
         };
         if desc.cap.is_some() {
@@ -187,6 +197,53 @@ impl Ppll {
     /// Whether the device can bound lists by itself.
     fn can_bound(&self, backend: &dyn Backend) -> bool {
         bounded::check(backend, self.size, self.desc.asked()).is_ok()
+    }
+
+    /// Makes room for what a view has needed. Where even the nearest have too little, fewer of a pixel are kept: which of them find
+    /// room would depend on the order in which they come.
+    fn grow(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
+        if counters.wanted <= self.pool.capacity {
+            return Ok(());
+        }
+        let was_bounded = self.bounded.is_on();
+        self.reserve(backend, counters.wanted.into())?;
+        self.unproven = None;
+        if was_bounded && counters.wanted > self.pool.largest {
+            let fits = self.pool.largest / counters.pixels_with_hair.max(1);
+            self.kept = fits.min(self.kept.saturating_sub(1));
+        }
+        Ok(())
+    }
+
+    /// Holds all fragments again where they have room.
+    fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
+        let nodes = with_headroom(fragments);
+        if self.desc.cap.is_some() || !self.bounded.is_on() || nodes > u64::from(self.pool.largest) {
+            return Ok(());
+        }
+        let kernel = self.resolve.prepare(backend, self.desc.variant(false))?;
+        if let Some(nodes) = self.pool.prepare(backend, nodes)? {
+            self.pool.replace(backend, nodes);
+        }
+        self.resolve.change(self.desc.variant(false), kernel);
+        self.bounded.turn_off(backend);
+        self.forget_bindings();
+        Ok(())
+    }
+
+    /// Gives back what was not needed for a long time.
+    fn shrink(&mut self, backend: &mut dyn Backend, [fragments, nodes, pixels]: [u64; 3]) -> Result<()> {
+        self.unbound(backend, fragments)?;
+        let needed = if self.bounded.is_on() { nodes } else { fragments };
+        if let Some(nodes) = self.pool.prepare_smaller(backend, needed)? {
+            self.pool.replace(backend, nodes);
+            self.forget_bindings();
+        }
+        let fits = u64::from(self.pool.largest) / with_headroom(pixels).max(1);
+        if self.bounded.is_on() && fits > u64::from(self.kept) {
+            self.kept = fits.min(u64::from(self.bounded.asked())) as u32;
+        }
+        Ok(())
     }
 
     fn forget_bindings(&mut self) {
@@ -233,24 +290,31 @@ impl TechniqueInstance for Ppll {
         }
         if let Some(prepared) = prepared {
             self.bound(backend, &desc, prepared);
+            self.unproven = Some((self.views, 0));
         }
+        self.usage.expect([fragments, fragments.min(most), 0]);
         self.forget_bindings();
         Ok(())
     }
 
-    /// Where even the nearest have too little room, fewer of a pixel are kept: which of them find room would depend on the order
-    /// in which they come.
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        if counters.wanted <= self.pool.capacity {
-            return Ok(false);
-        }
         let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
-        self.reserve(backend, counters.wanted.into())?;
-        if before.1 && counters.wanted > self.pool.largest {
-            let fits = self.pool.largest / counters.pixels_with_hair.max(1);
-            self.kept = fits.min(self.kept.saturating_sub(1));
+        self.grow(backend, counters)?;
+        let has_more_room = (self.pool.capacity, self.bounded.is_on(), self.kept) != before;
+        let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
+        let settled = self.usage.measured(needed);
+        if let Some((views, most)) = self.unproven.take() {
+            let most = most.max(counters.fragments.into());
+            if views > 1 {
+                self.unproven = Some((views - 1, most));
+            } else {
+                self.unbound(backend, most)?;
+            }
         }
-        Ok((self.pool.capacity, self.bounded.is_on(), self.kept) != before)
+        if let Some(most) = settled {
+            self.shrink(backend, most)?;
+        }
+        Ok(has_more_room)
     }
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
@@ -294,6 +358,8 @@ impl TechniqueInstance for Ppll {
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         self.pool.begin(list, views);
+        self.usage.begin_frame();
+        self.views = views.max(1);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
         self.pool.upload(list, groups, [self.kept, self.desc.asked()], tail::unlit(draws));
     }

@@ -9,7 +9,9 @@ use tressfx_core::shader::Binding;
 
 use super::PpllDesc;
 use crate::counters::ViewCounters;
+use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
+use crate::usage::is_surplus;
 use crate::views::BoundView;
 
 /// Bytes of a fragment: depth key, colour and alpha, next.
@@ -59,6 +61,8 @@ pub(crate) struct NodePool {
     pub(crate) uniform: BufferId,
     /// How many fragments there is room for.
     pub(crate) capacity: u32,
+    /// How many there is room for at least.
+    least: u32,
     /// How many there may be room for.
     pub(crate) largest: u32,
     count_limit: u32,
@@ -78,18 +82,26 @@ impl NodePool {
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
-        Ok(Self { heads, nodes, counters, uniform, capacity, largest, count_limit })
+        Ok(Self { heads, nodes, counters, uniform, capacity, least: capacity, largest, count_limit })
     }
 
     /// Nodes for `wanted` fragments, or for as many as are allowed, where there is less room; it changes nothing yet.
     pub(crate) fn prepare(&self, backend: &mut dyn Backend, wanted: u64) -> Result<Option<Nodes>> {
         let capacity = wanted.min(u64::from(self.largest)) as u32;
-        if capacity <= self.capacity {
-            return Ok(None);
-        }
+        if capacity > self.capacity { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
+    }
+
+    /// Nodes for `needed` fragments and some more, where there is much more room; it changes nothing yet.
+    pub(crate) fn prepare_smaller(&self, backend: &mut dyn Backend, needed: u64) -> Result<Option<Nodes>> {
+        let capacity = with_headroom(needed).clamp(u64::from(self.least), u64::from(self.largest)) as u32;
+        let shrinks = capacity < self.capacity && is_surplus(self.capacity.into(), needed);
+        if shrinks { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
+    }
+
+    fn nodes_for(&self, backend: &mut dyn Backend, capacity: u32) -> Result<Nodes> {
         // To destroy the old nodes before would free nothing yet, since older lists may still name them.
         let buffer = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
-        Ok(Some(Nodes { buffer, capacity }))
+        Ok(Nodes { buffer, capacity })
     }
 
     /// Uses other nodes. What the pool held is lost.
