@@ -45,8 +45,9 @@ fn a_simulation_and_its_parameters() {
 
 #[test]
 fn a_renderer_of_each_technique() {
-    let techniques: [Technique; 3] = [
+    let techniques: [Technique; 4] = [
         PpllDesc::default().fill(Fill::Raster).into(),
+        PpllDesc::default().cap(4).into(),
         ShortCutDesc::default().into(),
         ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
     ];
@@ -77,9 +78,15 @@ fn a_renderer_its_size_and_its_sections() {
     assert!(backend.living().0 == before.0 && backend.living().1 > before.1, "as many, and larger");
     let (before, capacity) = (backend.living(), renderer.capacity());
     let many = Counters { wanted: 8 * capacity, ..Counters::default() };
-    let ((), failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &many));
+    let (_, failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &many));
     assert_eq!(failures, 1, "the new nodes; the old ones stay where they cannot be made");
     assert!(renderer.capacity() > capacity && backend.living().0 == before.0);
+    let too_many = Counters { wanted: u32::MAX, ..Counters::default() };
+    let (_, failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &too_many));
+    assert!(failures > 4, "kernels and memory that bound the lists: {failures} creations");
+    let lists = PpllDesc::default().k(12);
+    let ((), failures) = backend.fail_everywhere(|backend| renderer.retune(backend, lists));
+    assert!(failures > 1, "a kernel, and memory for more of a pixel: {failures} creations");
     let strands = random_strands(8, 8, 1, 1);
     let info = StrandInfo::new(&strands);
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();

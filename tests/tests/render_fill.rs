@@ -159,6 +159,7 @@ fn a_full_pool_and_a_full_counter_are_harmless() {
             (lists.fill, lists.max_node_bytes, lists.count_limit) = (Fill::Raster, 16 * capacity, limit);
         };
         let Some(mut screen) = screen(full) else { return };
+        screen.may_grow = false;
         let picture = screen.hair(&[&groom]);
         let counters = picture.counters;
         eprintln!("room for {capacity}, counting to {limit}: {counters:?}");

@@ -24,7 +24,12 @@ fn strands(count: u32) -> Vec<Vec<Vec3>> {
 
 #[test]
 fn positions_that_are_not_finite_leave_out_their_segments_alone() {
-    let Some(mut screen) = screen(|setup| setup.ppll().k = 16) else { return };
+    positions_that_are_not_finite(16);
+    positions_that_are_not_finite(0);
+}
+
+fn positions_that_are_not_finite(k: u32) {
+    let Some(mut screen) = screen(|setup| setup.ppll().k = k) else { return };
     let whole = Groom::new(&strands(30), material());
     let expected = screen.hair(&[&whole]);
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -1e13] {
@@ -60,12 +65,14 @@ fn segments_without_length_draw_nothing_and_hide_nothing() {
 
 #[test]
 fn tangents_that_are_not_finite_do_not_spoil_their_neighbours() {
-    let Some(mut screen) = screen(|setup| setup.ppll().k = 1) else { return };
-    let mut groom = Groom::new(&strands(30), material());
-    groom.tangents[3 * 30 + 4] = [f32::NAN; 4];
-    let picture = screen.hair(&[&groom]);
-    assert!(picture.counters.fragments > 0);
-    assert!(picture.pixels().iter().all(|pixel| pixel.is_finite()), "a colour that is not a number is black");
+    for k in [0, 1] {
+        let Some(mut screen) = screen(|setup| setup.ppll().k = k) else { return };
+        let mut groom = Groom::new(&strands(30), material());
+        groom.tangents[3 * 30 + 4] = [f32::NAN; 4];
+        let picture = screen.hair(&[&groom]);
+        assert!(picture.counters.fragments > 0);
+        assert!(picture.pixels().iter().all(|pixel| pixel.is_finite()), "a colour that is not a number is black");
+    }
 }
 
 #[test]

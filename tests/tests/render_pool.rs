@@ -24,12 +24,13 @@ fn material() -> Material {
 }
 
 #[test]
-fn a_full_pool_drops_exactly_what_it_has_no_room_for() {
+fn a_pool_that_has_not_grown_yet_drops_exactly_what_it_has_no_room_for() {
     let groom = Groom::wavy(400, 16, 1, material());
     let Some(mut roomy) = screen(|_| ()) else { return };
     let all = roomy.hair(&[&groom]);
     for capacity in [1, 1000, 6000] {
         let Some(mut screen) = screen(|setup| setup.ppll().max_node_bytes = 16 * capacity) else { return };
+        screen.may_grow = false;
         let picture = screen.hair(&[&groom]);
         assert_eq!(u64::from(screen.renderer.capacity()), capacity);
         assert_eq!(picture.counters.fragments, all.counters.fragments, "what is wanted is counted all the same");
@@ -52,6 +53,7 @@ fn no_pixel_loses_its_list_when_the_pool_overflows() {
     let alone = roomy.hair(&[&first]);
     let fits = u64::from(alone.counters.fragments);
     let Some(mut tight) = screen(|setup| setup.ppll().max_node_bytes = 16 * fits) else { return };
+    tight.may_grow = false;
     let both = tight.hair(&[&first, &second]);
     assert!(both.counters.dropped > 10_000, "{:?}", both.counters);
     assert!(both.bytes == alone.bytes, "the first section is there to the bit");
@@ -163,8 +165,9 @@ fn a_counter_that_is_full_stays_full_and_says_so() {
     // From a counter that a few requests fill, over one that groups get to at the same time, to one that just holds all.
     for limit in [1, 64, 4096, all.fragments / 2, all.fragments, all.fragments + 1] {
         let Some(mut screen) = screen(|setup| setup.ppll().count_limit = limit) else { return };
-        let huge = tressfx_render::Counters { wanted: u32::MAX, ..Default::default() };
-        screen.renderer.grow_to_measured(&mut *screen.backend, &huge).unwrap();
+        screen.may_grow = false;
+        let many = tressfx_render::Counters { wanted: limit, ..Default::default() };
+        screen.renderer.grow_to_measured(&mut *screen.backend, &many).unwrap();
         assert_eq!(screen.renderer.capacity(), limit, "there is no node that cannot be counted");
         let picture = screen.hair(&[&groom]);
         let counters = picture.counters;

@@ -21,8 +21,10 @@ gpu_struct! {
         /// 1 where there were more fragments than can be counted, else 0.
         pub saturated: u32,
         /// What the technique wanted to keep: the fragments where it has lists of them, the references to segments where it has
-        /// tiles, else 0.
+        /// tiles, else 0. Of lists that do not hold all fragments: those that they were to hold.
         pub wanted: u32,
+        /// Fragments that were to be in order and found no room: they are in the picture, blended behind those that are in order.
+        pub merged: u32,
     }
 }
 
@@ -40,7 +42,7 @@ impl Counters {
     /// From the bytes of a read-back.
     ///
     /// # Panics
-    /// If there are not 20 bytes.
+    /// If there are not 24 bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }

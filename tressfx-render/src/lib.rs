@@ -4,6 +4,7 @@
 //! ```text
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
+//! hair.render.nearest           compute  one thread a strand segment: the K nearest, where lists are bounded Technique::Ppll
 //! hair.render.fill              compute  one thread a strand segment: its fragments into the pixels' lists  Technique::Ppll
 //! hair.render.resolve           compute  one thread a pixel: the K nearest sorted, the rest summed up       Technique::Ppll
 //!
@@ -47,13 +48,14 @@ mod strands;
 mod technique;
 mod tiles;
 pub mod uniforms;
+mod usage;
 mod views;
 mod visibility;
 
 pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};
-pub use ppll::{K_RANGE, PpllDesc};
+pub use ppll::{K_RANGE, PpllDesc, Tail};
 pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
 pub use segments::Fill;

@@ -1,34 +1,47 @@
 //! Per-pixel linked lists: the A-buffer. The nearest fragments of a pixel are sorted, the rest is blended without order.
 
+mod bounded;
 mod fill;
+mod nearest;
 mod pool;
 mod resolve;
+mod tail;
 
 use tressfx_core::backend::{Backend, Format};
-use tressfx_core::error::{Need, Result};
+use tressfx_core::error::{Error, Label, Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Module, Specialization};
+use tressfx_core::shader::{Kernel, Module};
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::counters::Counters;
 use crate::predict;
-use crate::renderer::Targets;
+use crate::renderer::{Targets, with_headroom};
 use crate::resolved::{Resolved, check_pixels, pixels};
 use crate::segments::{Fill, Segments};
-use crate::shaders::{GROUP, with_shared};
+use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::{TechniqueInstance, check_k};
+use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
+use crate::usage::Usage;
 use crate::views::BoundView;
+use bounded::{Bounded, Prepared};
 use pool::NodePool;
+use resolve::{Resolve, Variant};
 
 #[cfg(test)]
 pub(crate) use pool::PoolUniform;
 pub use resolve::K_RANGE;
+pub use tail::Tail;
+
+const LABEL: Label = "hair.render.ppll";
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<2, 15>([
+const LIBRARY: &[Module] = &with_shared::<5, 18>([
+    PIXELS,
+    ("kept", include_str!("../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../shaders/ppll/node.wgsl")),
+    ("rest", include_str!("../shaders/ppll/rest.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
 ]);
 
@@ -39,6 +52,13 @@ pub struct PpllDesc {
     /// How many of the nearest fragments of a pixel are put in order exactly; the rest is blended without order. In
     /// [`K_RANGE`].
     pub k: u32,
+    /// What is seen of the rest.
+    pub tail: Tail,
+    /// How many fragments of a pixel may take memory; `None` for all. The nearest do, the others are merged as they come: the
+    /// opacity of the pixel is the same, and from `k` on the whole picture. The memory is bounded then, and takes 20 bytes and
+    /// 4 for each of the nearest a pixel, and a third walk over the strands. Lists become so by themselves where there would be
+    /// more fragments than there may be room for.
+    pub cap: Option<u32>,
     /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
@@ -52,6 +72,18 @@ impl PpllDesc {
     #[must_use]
     pub fn k(self, k: u32) -> Self {
         Self { k, ..self }
+    }
+
+    /// The same with something else to be seen of the rest.
+    #[must_use]
+    pub fn tail(self, tail: Tail) -> Self {
+        Self { tail, ..self }
+    }
+
+    /// The same with memory for so many fragments of a pixel.
+    #[must_use]
+    pub fn cap(self, cap: impl Into<Option<u32>>) -> Self {
+        Self { cap: cap.into(), ..self }
     }
 
     /// The same with room for at most so many bytes of fragments.
@@ -75,12 +107,22 @@ impl PpllDesc {
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
+
+    /// How many fragments of a pixel have nodes where lists are bounded: more would not change the picture.
+    fn asked(&self) -> u32 {
+        self.cap.unwrap_or(self.k).min(self.k)
+    }
+
+    fn variant(&self, bounded: bool) -> Variant {
+        Variant { k: self.k, tail: self.tail, bounded }
+    }
 }
 
 impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
-        Self { k: 8, max_node_bytes: 256 << 20, count_limit: Self::COUNT_LIMIT, fill: Fill::Compute }
+        let (count_limit, fill) = (Self::COUNT_LIMIT, Fill::Compute);
+        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill }
     }
 }
 
@@ -95,37 +137,125 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
+    target: Format,
     fill: Segments,
-    resolve: resolve::Resolve,
+    resolve: Resolve,
     composite: Composite,
     pool: NodePool,
+    bounded: Bounded,
+    /// Where lists are bounded: how many fragments of a pixel have nodes.
+    kept: u32,
+    /// Where lists were bounded because of a prediction: views that are still to be measured, and the most fragments of those that
+    /// were.
+    unproven: Option<(usize, u64)>,
+    views: usize,
+    /// Fragments, nodes, pixels with hair.
+    usage: Usage<3>,
     resolved: Resolved,
 }
 
 impl Ppll {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
-        check_k("hair.render.ppll", desc.k, &K_RANGE)?;
+        check_k(LABEL, desc.k, &K_RANGE)?;
         check(backend, size)?;
-        Ok(Self {
+        let mut made = Self {
             desc: *desc,
             size,
-            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &Specialization::new(), target)?,
-            resolve: resolve::Resolve::new(backend, desc.k)?,
+            target,
+            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false), target)?,
+            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some()))?,
             composite: Composite::new(backend, target)?,
             pool: NodePool::new(backend, size, desc)?,
+            bounded: Bounded::default(),
+            kept: 0,
+            unproven: None,
+            views: 1,
+            usage: Usage::new(),
             resolved: Resolved::new(backend, size)?,
-        })
+        };
+        if desc.cap.is_some() {
+            let prepared = made.prepare(backend, desc)?;
+            made.bound(backend, desc, prepared);
+        }
+        Ok(made)
+    }
+
+    /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
+    fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
+        let kernel = self.resolve.prepare(backend, desc.variant(true))?;
+        Ok((kernel, self.bounded.prepare(backend, self.size, desc.asked(), desc.fill, self.target)?))
+    }
+
+    /// Does so.
+    fn bound(&mut self, backend: &mut dyn Backend, desc: &PpllDesc, (kernel, prepared): (Option<Kernel>, Prepared)) {
+        self.resolve.change(desc.variant(true), kernel);
+        self.bounded.turn_on(backend, prepared);
+        self.kept = desc.asked();
+        self.forget_bindings();
+    }
+
+    /// Whether the device can bound lists by itself.
+    fn can_bound(&self, backend: &dyn Backend) -> bool {
+        bounded::check(backend, self.size, self.desc.asked()).is_ok()
+    }
+
+    /// Makes room for what a view has needed. Where even the nearest have too little, fewer of a pixel are kept: which of them find
+    /// room would depend on the order in which they come.
+    fn grow(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
+        if counters.wanted <= self.pool.capacity {
+            return Ok(());
+        }
+        let was_bounded = self.bounded.is_on();
+        self.reserve(backend, counters.wanted.into())?;
+        self.unproven = None;
+        if was_bounded && counters.wanted > self.pool.largest {
+            let fits = self.pool.largest / counters.pixels_with_hair.max(1);
+            self.kept = fits.min(self.kept.saturating_sub(1));
+        }
+        Ok(())
+    }
+
+    /// Holds all fragments again where they have room.
+    fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
+        let nodes = with_headroom(fragments);
+        if self.desc.cap.is_some() || !self.bounded.is_on() || nodes > u64::from(self.pool.largest) {
+            return Ok(());
+        }
+        let kernel = self.resolve.prepare(backend, self.desc.variant(false))?;
+        if let Some(nodes) = self.pool.prepare(backend, nodes)? {
+            self.pool.replace(backend, nodes);
+        }
+        self.resolve.change(self.desc.variant(false), kernel);
+        self.bounded.turn_off(backend);
+        self.forget_bindings();
+        Ok(())
+    }
+
+    /// Gives back what was not needed for a long time.
+    fn shrink(&mut self, backend: &mut dyn Backend, [fragments, nodes, pixels]: [u64; 3]) -> Result<()> {
+        self.unbound(backend, fragments)?;
+        let needed = if self.bounded.is_on() { nodes } else { fragments };
+        if let Some(nodes) = self.pool.prepare_smaller(backend, needed)? {
+            self.pool.replace(backend, nodes);
+            self.forget_bindings();
+        }
+        let fits = u64::from(self.pool.largest) / with_headroom(pixels).max(1);
+        if self.bounded.is_on() && fits > u64::from(self.kept) {
+            self.kept = fits.min(u64::from(self.bounded.asked())) as u32;
+        }
+        Ok(())
     }
 
     fn forget_bindings(&mut self) {
         self.fill.forget_bindings();
+        self.bounded.forget_bindings();
         self.resolve.bound.clear();
         self.composite.bound.clear();
     }
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
-        [self.fill.shader(), &self.resolve.kernel.shader, &self.composite.pipeline.shader]
+        [self.fill.shader(), &self.resolve.kernel().shader, &self.composite.pipeline.shader]
     }
 }
 
@@ -134,6 +264,11 @@ impl TechniqueInstance for Ppll {
         check(backend, size)?;
         let pool = NodePool::new(backend, size, &self.desc)?;
         let resolved = Resolved::new(backend, size)?;
+        let bounded = &self.bounded;
+        let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.target);
+        if let Some(prepared) = bounded.is_on().then(prepare).transpose()? {
+            self.bounded.turn_on(backend, prepared);
+        }
         std::mem::replace(&mut self.pool, pool).destroy(backend);
         std::mem::replace(&mut self.resolved, resolved).destroy(backend);
         self.size = size;
@@ -146,9 +281,63 @@ impl TechniqueInstance for Ppll {
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
-        let grown = self.pool.grow(backend, fragments);
+        let desc = self.desc;
+        let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
+        let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
+        let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most))? {
+            self.pool.replace(backend, nodes);
+        }
+        if let Some(prepared) = prepared {
+            self.bound(backend, &desc, prepared);
+            self.unproven = Some((self.views, 0));
+        }
+        self.usage.expect([fragments, fragments.min(most), 0]);
         self.forget_bindings();
-        grown
+        Ok(())
+    }
+
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
+        self.grow(backend, counters)?;
+        let has_more_room = (self.pool.capacity, self.bounded.is_on(), self.kept) != before;
+        let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
+        let settled = self.usage.measured(needed);
+        if let Some((views, most)) = self.unproven.take() {
+            let most = most.max(counters.fragments.into());
+            if views > 1 {
+                self.unproven = Some((views - 1, most));
+            } else {
+                self.unbound(backend, most)?;
+            }
+        }
+        if let Some(most) = settled {
+            self.shrink(backend, most)?;
+        }
+        Ok(has_more_room)
+    }
+
+    fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill);
+        let Technique::Ppll(desc) = technique else { return Err(another_technique(LABEL)) };
+        check_k(LABEL, desc.k, &K_RANGE)?;
+        if fixed(desc) != fixed(&self.desc) {
+            return Err(Error::rule(LABEL, "what is not `k`, `tail` or `cap` needs a new renderer".to_owned()));
+        }
+        let was_capped = self.desc.cap.is_some();
+        let stays = self.bounded.is_on() && (desc.cap.is_some() || !was_capped);
+        if stays && self.bounded.asked() == desc.asked() || !stays && desc.cap.is_none() {
+            let kernel = self.resolve.prepare(backend, desc.variant(stays))?;
+            self.resolve.change(desc.variant(stays), kernel);
+            if !stays {
+                self.bounded.turn_off(backend);
+            }
+        } else {
+            let prepared = self.prepare(backend, desc)?;
+            self.bound(backend, desc, prepared);
+        }
+        self.desc = *desc;
+        Ok(())
     }
 
     fn capacity(&self) -> u32 {
@@ -156,7 +345,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn bytes(&self) -> u64 {
-        self.pool.bytes(self.size) + Resolved::bytes(self.size)
+        self.pool.bytes(self.size) + self.bounded.bytes() + Resolved::bytes(self.size)
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
@@ -165,17 +354,32 @@ impl TechniqueInstance for Ppll {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.fill.begin_frame();
+        self.bounded.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
+        self.pool.begin(list, views);
+        self.usage.begin_frame();
+        self.views = views.max(1);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.begin(list, views, groups);
+        self.pool.upload(list, groups, [self.kept, self.desc.asked()], tail::unlit(draws));
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
         self.resolved.clear(list);
-        self.fill.passes(list, view, draws, targets, &self.pool.bindings(view))?;
-        self.resolve.pass(list, view, &self.pool, &self.resolved)?;
+        let own = self.pool.bindings(view);
+        match self.bounded.passes() {
+            None => self.fill.passes(list, view, draws, targets, &own)?,
+            Some(passes) => {
+                passes.clear(list, view.size, self.kept);
+                if self.kept > 0 {
+                    passes.nearest.passes(list, view, draws, targets, &[own[0], passes.keys])?;
+                }
+                let own = [&own[..], &[passes.keys, passes.rest]].concat();
+                passes.fill.passes(list, view, draws, targets, &own)?;
+            }
+        }
+        self.resolve.pass(list, view, &self.pool, &self.resolved, self.bounded.rest())?;
         self.composite.pass(list, view, &self.resolved, targets.color)
     }
 }

@@ -5,6 +5,7 @@
 
 mod fill;
 mod image;
+mod nearest;
 mod projection;
 mod resolve;
 mod shade;
@@ -17,8 +18,9 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use crate::uniforms::SectionUniform;
 
 pub use fill::{Fragment, coverage, fill};
-pub use image::{exact, resolved, shortcut, supersampled};
-pub use resolve::resolve;
+pub use image::{exact, resolved, resolved_with_tail, shortcut, supersampled};
+pub use nearest::nearest;
+pub use resolve::{resolve, resolve_with_tail};
 pub use shade::shade;
 pub use shortcut_colors::shortcut_colors;
 pub use shortcut_depths::{LayerPlace, Layers, shortcut_depths};

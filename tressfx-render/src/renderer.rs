@@ -16,6 +16,11 @@ use crate::views::{MAX_VIEWS, ViewDraw, Views};
 /// The pool is made this many times as large as predicted or measured, since the next frame may need more.
 pub(crate) const HEADROOM: f64 = 1.25;
 
+/// What a pool is made for that has to hold this much.
+pub(crate) fn with_headroom(wanted: u64) -> u64 {
+    (wanted as f64 * HEADROOM) as u64
+}
+
 /// Describes a renderer that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -87,8 +92,8 @@ pub enum DrawError {
 
 /// Draws hair: strands are shaded for a view and turned into fragments, which a [`Technique`] sorts and blends.
 ///
-/// The same strands and view give exactly the same picture, bit for bit, as long as no fragment is dropped. Which fragments
-/// are dropped when the pool is full depends on the GPU.
+/// The same strands and view give exactly the same picture, bit for bit, as long as all that is to be kept finds room. What does not
+/// find room, before the renderer has measured how much there is, depends on the GPU.
 #[derive(Debug)]
 pub struct HairRenderer {
     desc: RenderDesc,
@@ -115,6 +120,19 @@ impl HairRenderer {
     /// What it was made from.
     pub fn desc(&self) -> &RenderDesc {
         &self.desc
+    }
+
+    /// Changes settings of the technique between frames: `k`, `tail` and `cap` of lists, `closed_below` of tiles. A kernel that was not
+    /// used before is compiled, and kept. Lists that were written before stay valid.
+    ///
+    /// # Errors
+    /// Another technique, another value of what is not named above, a `k` out of its range, or what the backend says. The
+    /// renderer is unchanged then.
+    pub fn retune(&mut self, backend: &mut dyn Backend, technique: impl Into<Technique>) -> Result<()> {
+        let technique = technique.into();
+        self.owner.change(backend, |backend| self.order.retune(backend, &technique))?;
+        self.desc.technique = technique;
+        Ok(())
     }
 
     /// Bytes of the buffers in which the technique keeps fragments and pixels at present.
@@ -149,7 +167,7 @@ impl HairRenderer {
             return Ok(());
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
-        let wanted = (self.order.predicted(view, &draws) * HEADROOM) as u64;
+        let wanted = self.order.predicted(view, &draws) as u64;
         self.owner.change(backend, |backend| {
             self.order.reserve_vertices(backend, &draws)?;
             self.order.reserve(backend, wanted)
@@ -157,16 +175,18 @@ impl HairRenderer {
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
-    /// are those that [`HairRenderer::request_counters`] has brought back.
+    /// are those that [`HairRenderer::request_counters`] has brought back. Lists that would need more than their limit hold the
+    /// nearest fragments of each pixel from then on, and merge the others, see [`PpllDesc::cap`](crate::PpllDesc::cap).
+    ///
+    /// What was more than twice as large as needed for 120 frames, of which at least 30 measurements came, is made smaller: a groom
+    /// that leaves gives its memory back.
+    ///
+    /// Returns whether the same frame would now find more room.
     ///
     /// # Errors
     /// As [`HairRenderer::grow_to_predicted`].
-    pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
-        if counters.wanted <= self.capacity() {
-            return Ok(());
-        }
-        let wanted = (f64::from(counters.wanted) * HEADROOM) as u64;
-        self.owner.change(backend, |backend| self.order.reserve(backend, wanted))
+    pub fn grow_to_measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        self.owner.change(backend, |backend| self.order.measured(backend, counters))
     }
 
     /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is
@@ -295,7 +315,7 @@ mod tests {
             let desc = PpllDesc { k, ..PpllDesc::default() };
             let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
             let [fill, resolve, composite] = ppll.shaders();
-            assert_eq!(resolve.features, format!("K={k}"));
+            assert_eq!(resolve.features, format!("shaded K={k}"));
             let counts = [&*shade.kernel.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
@@ -322,10 +342,8 @@ mod tests {
             let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique);
             HairRenderer::new(&mut backend, &desc).unwrap_err().to_string()
         };
-        for k in [0, 17] {
-            let said = format!("hair.render.ppll: k is {k}, it must be from 1 to 16");
-            assert_eq!(refused(PpllDesc::default().k(k).into()), said);
-        }
+        let said = "hair.render.ppll: k is 33, it must be from 0 to 32";
+        assert_eq!(refused(PpllDesc::default().k(33).into()), said);
         for k in [0, 9] {
             let said = format!("hair.render.shortcut: k is {k}, it must be from 1 to 8");
             assert_eq!(refused(ShortCutDesc::default().k(k).into()), said);

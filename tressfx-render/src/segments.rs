@@ -68,6 +68,17 @@ impl Segments {
         Ok(Self { pipeline, bound: Bound::new() })
     }
 
+    /// A pass that has no raster pass beside it.
+    pub(crate) fn compute(
+        backend: &mut dyn Backend,
+        label: Label,
+        root: Module,
+        library: &'static [Module],
+    ) -> Result<Self> {
+        let kernel = compute(backend, label, root, library, &Specialization::new())?;
+        Ok(Self { pipeline: Pipeline::Compute(kernel), bound: Bound::new() })
+    }
+
     pub(crate) fn begin_frame(&mut self) {
         self.bound.begin_frame();
     }

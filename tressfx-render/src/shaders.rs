@@ -30,6 +30,9 @@ pub(crate) const SHARED: [Module; 13] = [
     ("walk", include_str!("../shaders/shared/walk.wgsl")),
 ];
 
+/// The end of a technique with one thread a pixel.
+pub(crate) const PIXELS: Module = ("pixels", include_str!("../shaders/shared/pixels.wgsl"));
+
 /// [`SHARED`] and the modules of a technique.
 pub(crate) const fn with_shared<const OWN: usize, const ALL: usize>(own: [Module; OWN]) -> [Module; ALL] {
     assert!(ALL == OWN + SHARED.len());

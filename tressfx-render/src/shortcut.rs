@@ -25,7 +25,7 @@ use crate::renderer::Targets;
 use crate::resolved::{check_pixels, pixels};
 use crate::segments::{Fill, Segments};
 use crate::strands::SectionDraw;
-use crate::technique::{TechniqueInstance, check_k};
+use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::views::BoundView;
 use memory::Memory;
 
@@ -134,6 +134,10 @@ impl TechniqueInstance for ShortCut {
 
     fn reserve(&mut self, _: &mut dyn Backend, _: u64) -> Result<()> {
         Ok(())
+    }
+
+    fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        if *technique == self.desc.into() { Ok(()) } else { Err(another_technique("hair.render.shortcut")) }
     }
 
     fn capacity(&self) -> u32 {

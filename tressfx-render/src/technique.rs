@@ -9,6 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
+use crate::counters::Counters;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
 use crate::shortcut::{ShortCut, ShortCutDesc};
@@ -44,13 +45,25 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
 
-    /// Enlarges the pool to at least this much, up to its limit.
+    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit.
     fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()>;
+
+    /// Makes room for what a view has needed. Returns whether there is another room than before.
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        let before = self.capacity();
+        if counters.wanted > before {
+            self.reserve(backend, counters.wanted.into())?;
+        }
+        Ok(self.capacity() > before)
+    }
 
     /// Makes room for the vertices of sections, where the technique keeps any.
     fn reserve_vertices(&mut self, _: &mut dyn Backend, _: &[SectionDraw]) -> Result<()> {
         Ok(())
     }
+
+    /// Changes what can be changed from frame to frame.
+    fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()>;
 
     /// How much the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
@@ -71,6 +84,11 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
 
     /// Writes the passes of a view.
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()>;
+}
+
+/// What an instance says that is told to be another technique, or to change what it cannot.
+pub(crate) fn another_technique(label: Label) -> Error {
+    Error::rule(label, "another technique needs a new renderer".to_owned())
 }
 
 /// Whether a technique takes `k` fragments of a pixel.

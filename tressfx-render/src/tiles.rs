@@ -16,11 +16,13 @@ use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::counters::Counters;
 use crate::predict;
-use crate::renderer::Targets;
+use crate::renderer::{Targets, with_headroom};
 use crate::resolved::check_pixels;
 use crate::strands::SectionDraw;
-use crate::technique::TechniqueInstance;
+use crate::technique::{Technique, TechniqueInstance, another_technique};
+use crate::usage::Usage;
 use crate::views::BoundView;
 use kernels::Kernels;
 use layout::Layout;
@@ -77,6 +79,8 @@ pub(crate) struct Tiles {
     kernels: Kernels,
     composite: Composite,
     memory: Memory,
+    /// References and vertices.
+    usage: Usage<2>,
 }
 
 impl Tiles {
@@ -87,6 +91,7 @@ impl Tiles {
             kernels: Kernels::new(backend)?,
             composite: Composite::new(backend, target)?,
             memory: Memory::new(backend, size, desc)?,
+            usage: Usage::new(),
         })
     }
 
@@ -115,15 +120,39 @@ impl TechniqueInstance for Tiles {
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {
-        let grown = self.memory.grow_references(backend, references);
+        self.usage.expect([references, 0]);
+        let grown = self.memory.grow_references(backend, with_headroom(references));
         self.forget_bindings();
         grown
     }
 
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        let before = self.capacity();
+        if counters.wanted > before {
+            self.reserve(backend, counters.wanted.into())?;
+        }
+        let has_more_room = self.capacity() > before;
+        if let Some([references, vertices]) = self.usage.measured([counters.wanted.into(), 0]) {
+            self.memory.shrink(backend, references, vertices)?;
+            self.forget_bindings();
+        }
+        Ok(has_more_room)
+    }
+
     fn reserve_vertices(&mut self, backend: &mut dyn Backend, draws: &[SectionDraw]) -> Result<()> {
+        self.usage.expect([0, layout::vertices(draws)]);
         let grown = self.memory.grow_vertices(backend, layout::vertices(draws));
         self.forget_bindings();
         grown
+    }
+
+    fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        let Technique::Tiles(desc) = technique else { return Err(another_technique("hair.render.tiles")) };
+        if desc.max_reference_bytes != self.desc.max_reference_bytes {
+            return Err(Error::rule("hair.render.tiles", "another limit of memory needs a new renderer".to_owned()));
+        }
+        self.desc = *desc;
+        Ok(())
     }
 
     fn capacity(&self) -> u32 {
@@ -147,7 +176,9 @@ impl TechniqueInstance for Tiles {
         Ok(())
     }
 
-    fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
+    fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
+        self.usage.begin_frame();
+        self.usage.expect([0, layout::vertices(draws)]);
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
         self.memory.counters.clear(list, views);

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Technique, TilesDesc};
+use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -14,6 +14,15 @@ pub(crate) struct Oit {
     /// The nearest fragments of a pixel that are sorted; without it, the default of the technique
     #[arg(long, value_name = "K")]
     oit_k: Option<u32>,
+    /// With `--oit ppll`: what is seen of the fragments behind the K nearest; `shaded` by default
+    #[arg(long, value_enum)]
+    oit_tail: Option<TailName>,
+    /// With `--oit ppll`: fragments of a pixel that take memory, the nearest; the others are merged. Without it, all
+    #[arg(long, value_name = "N")]
+    oit_cap: Option<u32>,
+    /// With `--oit ppll`: bytes that the lists may take, 16 a fragment. Without it, 256 MiB
+    #[arg(long, value_name = "BYTES")]
+    oit_bytes: Option<u64>,
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
@@ -40,8 +49,28 @@ impl FillName {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TailName {
+    /// Their mean colour, and their opacity
+    Shaded,
+    /// The colour of hair without light, and their opacity
+    Unshaded,
+    /// Nothing
+    None,
+}
+
+impl TailName {
+    fn tail(self) -> Tail {
+        match self {
+            Self::Shaded => Tail::Shaded,
+            Self::Unshaded => Tail::Unshaded,
+            Self::None => Tail::None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum OitName {
-    /// A list of fragments for each pixel (K from 1 to 16, 8 by default)
+    /// A list of fragments for each pixel (K from 0 to 32, 8 by default)
     Ppll,
     /// Layers of the nearest fragments of each pixel, in little memory (K from 1 to 8, 3 by default)
     Shortcut,
@@ -60,9 +89,18 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
+        let of_lists =
+            [("tail", self.oit_tail.is_some()), ("cap", self.oit_cap.is_some()), ("bytes", self.oit_bytes.is_some())];
+        for (name, is_given) in of_lists {
+            if is_given && self.oit != OitName::Ppll {
+                bail!("--oit-{name} belongs to --oit ppll");
+            }
+        }
         match self.oit {
             OitName::Ppll => {
-                let desc = PpllDesc::default();
+                let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
+                let desc = PpllDesc::default().tail(tail).cap(self.oit_cap);
+                let desc = desc.max_node_bytes(self.oit_bytes.unwrap_or(desc.max_node_bytes));
                 Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
             }
             OitName::Shortcut => {

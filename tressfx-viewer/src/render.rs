@@ -9,6 +9,7 @@ use tressfx_asset::mesh::Mesh;
 use crate::cli::Render;
 use crate::picture::{Output, developed, texels};
 use crate::run::{Progress, Run};
+use crate::stats::RenderStats;
 use crate::studio::Studio;
 use crate::{passes, reference};
 
@@ -33,20 +34,23 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     }
     output.finish(args.scene.fps)?;
     run.report(&args.scene, studio.drawn)?;
-    check_whole(args, studio.drawn.dropped)
+    check_whole(args, &studio.drawn)
 }
 
-/// Says what is missing in the picture, and fails if that was asked for.
-fn check_whole(args: &Render, dropped: u64) -> Result<()> {
-    if dropped == 0 || args.reference {
+/// Says what is missing in the picture or out of order, and fails if that was asked for.
+fn check_whole(args: &Render, drawn: &RenderStats) -> Result<()> {
+    if args.reference {
         return Ok(());
     }
     let what = if args.oit.is_tiles() { "references of tiles to segments" } else { "fragments" };
-    let missing = format!("{dropped} {what} found no room: hair is missing in the picture");
-    if args.strict {
-        bail!(missing);
+    let missing = format!("{} {what} found no room: hair is missing in the picture", drawn.dropped);
+    let merged = format!("{} fragments found no room and were merged: hair is there, its order is not", drawn.merged);
+    let losses = [(drawn.dropped, missing), (drawn.merged, merged)];
+    let said: Vec<_> = losses.into_iter().filter_map(|(count, said)| (count > 0).then_some(said)).collect();
+    if args.strict && !said.is_empty() {
+        bail!(said.join("; "));
     }
-    eprintln!("{missing}");
+    said.iter().for_each(|said| eprintln!("{said}"));
     Ok(())
 }
 

@@ -55,6 +55,8 @@ pub(crate) struct RenderStats {
     pub(crate) fragments: u64,
     /// What found no room: fragments, or references of tiles to segments.
     pub(crate) dropped: u64,
+    /// Fragments that were to be in order, found no room, and were blended behind those that are.
+    pub(crate) merged: u64,
     pub(crate) pixels_with_hair: u64,
     /// Of all buffers and textures.
     pub(crate) peak_gpu_bytes: u64,

@@ -79,19 +79,19 @@ impl Studio {
     }
 
     /// Reads the counters of the frame that was just drawn and makes room where there was too little. Says whether the
-    /// frame would now be drawn with fewer fragments dropped.
+    /// frame would now find more room.
     pub(crate) fn take_stock(&mut self, run: &mut Run, counters: Ticket) -> Result<bool> {
         let counters = Counters::from_bytes(&run.fetch(counters)?);
         self.drawn = RenderStats {
             fragments: u64::from(counters.fragments),
             dropped: u64::from(counters.dropped),
+            merged: u64::from(counters.merged),
             pixels_with_hair: u64::from(counters.pixels_with_hair),
             ..RenderStats::default()
         };
-        let before = self.renderer.capacity();
-        self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
+        let has_more_room = self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
         self.drawn.oit_bytes = self.renderer.technique_bytes();
-        Ok(self.renderer.capacity() > before)
+        Ok(has_more_room)
     }
 
     /// Draws the newest frame once more, and brings the picture.

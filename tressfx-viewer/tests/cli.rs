@@ -94,11 +94,34 @@ fn bad_words_are_refused_by_name() {
     std::fs::write(folder.join("bad.toml"), "[sim]\ndamping = 7.0\n").unwrap();
     let (message, _) = words(&["--params", "bad.toml"]);
     assert!(message.contains("bad.toml") && message.contains("damping"), "{message}");
-    assert!(words(&["--oit-k", "17"]).0.contains("--oit-k 17: it must be from 1 to 16"));
+    assert!(words(&["--oit-k", "33"]).0.contains("--oit-k 33: it must be from 0 to 32"));
     assert!(words(&["--oit", "shortcut", "--oit-k", "9"]).0.contains("--oit-k 9: it must be from 1 to 8"));
+    assert!(words(&["--oit", "tiles", "--oit-tail", "none"]).0.contains("--oit-tail belongs to --oit ppll"));
     assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
     assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
+}
+
+#[test]
+fn what_finds_no_room_is_said_and_is_an_error_if_asked_for() {
+    let folder = folder("no_room");
+    let words = |extra: &[&str]| {
+        let common = ["render", "builtin:long:400", "--frames", "1", "--size", "160x90", "--out", "x.png"];
+        common.iter().chain(extra).map(|word| (*word).to_owned()).collect::<Vec<_>>()
+    };
+    let drawn = |extra: &[&str]| {
+        let words = words(&[extra, &["--stats", "x.json"]].concat());
+        passes(&folder, &words.iter().map(String::as_str).collect::<Vec<_>>());
+        let stats: Value = serde_json::from_slice(&std::fs::read(folder.join("x.json")).unwrap()).unwrap();
+        ["fragments", "dropped", "merged"].map(|key| stats["render"][key].as_u64().unwrap())
+    };
+    let [fragments, ..] = drawn(&["--strict"]);
+    assert_eq!(drawn(&["--strict", "--oit-cap", "2"]), [fragments, 0, 0], "nobody asked for more");
+    let [all, dropped, merged] = drawn(&["--oit-bytes", "16000"]);
+    assert!((all, dropped) == (fragments, 0) && merged > 0, "{all}, {dropped}, {merged}");
+    let strict = words(&["--oit-bytes", "16000", "--strict"]);
+    let (message, _) = fails(&folder, &strict.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(message.contains("were merged: hair is there"), "{message}");
 }
 
 #[test]
@@ -169,7 +192,7 @@ fn each_technique_draws_the_hair_and_says_what_it_takes() {
         let [width, height] = [160, 90u64];
         let tiles = 4 * width.div_ceil(8) * height.div_ceil(8);
         // Of eight views; and the arguments of the draw over the tiles.
-        let counters = 8 * 20 + 16;
+        let counters = 8 * 24 + 16;
         assert_eq!(render["oit_bytes"].as_u64(), Some(bytes * width * height + tiles + counters), "{words:?}");
         let flip = flip_to_lists(&folder, "shortcut.png");
         assert!(flip < 0.03, "{words:?}: FLIP {flip} to the lists");

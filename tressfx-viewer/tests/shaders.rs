@@ -17,12 +17,15 @@ const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
 const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 8] = [
+const VARIANTS: [&[&str]; 11] = [
     &[],
     &["builtin:fur:40:3", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
-    &["pinned.tfx", "--oit-k", "16"],
+    &["pinned.tfx", "--oit-k", "32", "--oit-tail", "unshaded"],
+    &["--oit-k", "0", "--oit-tail", "none"],
     &["pinned.tfx", "--params", "bare.toml"],
     &["--fill", "raster"],
+    &["--oit-cap", "8"],
+    &["--oit-cap", "2", "--fill", "raster"],
     &["--oit", "shortcut", "--oit-k", "1"],
     &["--oit", "shortcut", "--oit-ordered", "--oit-k", "8"],
     &["--oit", "shortcut", "--oit-ordered", "--fill", "raster"],

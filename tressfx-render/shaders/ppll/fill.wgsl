@@ -13,6 +13,8 @@ import package::walk::walk;
 // One request to the pool a group instead of one a fragment: everybody waits for that counter.
 var<workgroup> requested: atomic<u32>;
 var<workgroup> granted: u32;
+@if(bounded)
+var<workgroup> behind: atomic<u32>;
 
 // The number of the first of `count` nodes. The counter ends at the limit: nodes beyond the capacity do not exist, and one
 // that wrapped would give nodes out twice.
@@ -31,11 +33,20 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
+// Fragments that are not to have a node. What has overflowed once stays full.
+@if(bounded)
+fn count_behind(count: u32) {
+    if atomicAdd(&counters.merged, count) > 0xffffffffu - count {
+        atomicOr(&counters.merged, 0x80000000u);
+    }
+}
+
 @compute @workgroup_size(GROUP)
 fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
         @builtin(local_invocation_index) lane: u32) {
     if lane == 0u {
         atomicStore(&requested, 0u);
+        @if(bounded) { atomicStore(&behind, 0u); }
     }
     workgroupBarrier();
     let i = thread_index(group, groups, lane);
@@ -48,13 +59,17 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     var counted: Sink;
     walk(ribbon, paint, &counted);
     let place = atomicAdd(&requested, counted.count);
+    @if(bounded) { atomicAdd(&behind, counted.behind); }
     workgroupBarrier();
     if lane == 0u {
         granted = request(atomicLoad(&requested));
+        @if(bounded) { count_behind(atomicLoad(&behind)); }
     }
     workgroupBarrier();
-    if counted.count > 0u && granted < pool.capacity {
-        var stored = Sink(granted + place, counted.count, 0u);
+    var is_stored = counted.count > 0u && granted < pool.capacity;
+    @if(bounded) { is_stored = counted.count + counted.behind > 0u; }
+    if is_stored {
+        var stored = Sink(granted + place, counted.count, 0u, 0u, 1u);
         walk(ribbon, paint, &stored);
     }
 }

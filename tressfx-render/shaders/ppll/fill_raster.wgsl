@@ -2,10 +2,14 @@
 
 import package::counters::Counters;
 import package::fragment::Fragment;
-import package::node::pack_node;
 import package::quad::{Corner, corner_of, fragment_of, pixel_of};
-import package::sink::{heads, nodes, pool};
 import package::screen::view;
+import package::sink::{link, pool};
+
+@if(bounded)
+import package::rest::add_to_rest;
+@if(bounded)
+import package::sink::is_kept;
 
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
 
@@ -14,24 +18,45 @@ fn segment_corner(@builtin(vertex_index) vertex: u32) -> Corner {
     return corner_of(vertex);
 }
 
-fn append(pixel: vec2<u32>, fragment: Fragment) {
+// The number of a new node. The counter ends at the limit.
+fn request() -> u32 {
     // There are always fewer fragments at work than there are numbers beyond the limit: the counter never wraps.
     if atomicLoad(&counters.fragments) >= pool.limit {
-        return;
+        return pool.limit;
     }
-    let node = atomicAdd(&counters.fragments, 1u);
+    return atomicAdd(&counters.fragments, 1u);
+}
+
+@if(!bounded)
+fn append(index: u32, fragment: Fragment) {
+    let node = request();
     // One that finds no room in the pool leaves the list as it is.
     if node < pool.capacity {
-        let next = atomicExchange(&heads[pixel.y * view.size.x + pixel.x], node + 1u);
-        nodes[node] = pack_node(fragment, next);
+        link(index, node, fragment);
     }
+}
+
+@if(bounded)
+fn append(index: u32, fragment: Fragment) {
+    if is_kept(index, fragment) {
+        let node = request();
+        if node < pool.capacity {
+            link(index, node, fragment);
+            return;
+        }
+    } else if atomicAdd(&counters.merged, 1u) == 0xffffffffu {
+        // What has overflowed once stays full.
+        atomicOr(&counters.merged, 0x80000000u);
+    }
+    add_to_rest(index, fragment);
 }
 
 @fragment
 fn fill_raster(corner: Corner) -> @location(0) vec4<f32> {
     let fragment = fragment_of(corner);
     if fragment.alpha > 0u {
-        append(pixel_of(corner), fragment);
+        let pixel = pixel_of(corner);
+        append(pixel.y * view.size.x + pixel.x, fragment);
     }
     // The picture itself is drawn by the composite.
     discard;

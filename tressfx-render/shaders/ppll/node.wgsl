@@ -13,7 +13,14 @@ struct PoolUniform {
     // Requests up to this one are added without a look at the limit: all groups of the frame together ask for less than the
     // limit then, so that the counter stays below 2 * limit whatever happens, and never wraps.
     small_request: u32,
-    unused: u32,
+    // Where not all fragments have a node: how many of a pixel have, and how many were to have one.
+    kept: u32,
+    asked: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
+    // The colour of a tail that is not shaded.
+    unlit: vec4<f32>,
 }
 
 fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {

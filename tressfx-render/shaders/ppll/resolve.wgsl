@@ -1,30 +1,29 @@
-// The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest is summed up in integers.
+// The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest, its tail, is summed up in
+// integers: with its colours, or, unshaded, with its opacities alone, or not at all. Where lists are bounded, the rest that has
+// no nodes begins the tail.
 //
 // The order of a list changes from run to run with the order of the atomics; the result does not, to the bit: fragments
 // are sorted under a total order, and sums of integers know no order.
 
 import package::constants::K;
-import package::counters::Counters;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
-import package::sums::{FULL, mean_color, optical_depth, transmittance_of, weighted};
-import package::view::ViewUniform;
+import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
+import package::rest::{SUMS, UNIT};
+import package::sums::{FULL, optical_depth, transmittance_of};
 
-@group(0) @binding(0) var<uniform> view: ViewUniform;
+@if(shaded)
+import package::sums::{mean_color, weighted};
+
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
-@group(0) @binding(4) var<storage, read_write> counters: Counters;
-// Premultiplied colour and alpha as four half floats, a pixel.
-@group(0) @binding(5) var<storage, read_write> resolved: array<vec2<u32>>;
-// Tiles of 8 x 8 pixels with hair.
-@group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
-// Six vertices for each of them: the arguments of a draw.
-@group(0) @binding(7) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
+@if(bounded)
+@group(0) @binding(8) var<storage, read> rest: array<u32>;
 
+// An array has at least one element, and the one of K = 0 is never looked at.
+const ROOM: u32 = max(K, 1u);
 const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
-// The sums of a tail have room for 131 thousand white fragments.
-const UNIT: f32 = 16384.0;
 
 // What lies behind the K nearest.
 struct Tail {
@@ -34,8 +33,6 @@ struct Tail {
     color: vec3<u32>,
 }
 
-var<workgroup> hairy: atomic<u32>;
-
 fn is_before(a: vec3<u32>, b: vec3<u32>) -> bool {
     return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
 }
@@ -44,10 +41,18 @@ fn add(tail: ptr<function, Tail>, node: vec3<u32>) {
     let alpha = packed_alpha(node.yz);
     (*tail).optical = min((*tail).optical + optical_depth(alpha), FULL);
     (*tail).weight = min((*tail).weight + alpha, FULL);
-    (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
+    @if(shaded) {
+        (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
+    }
 }
 
-fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
+// The colour of a tail with a weight.
+fn tail_color(tail: Tail) -> vec3<f32> {
+    @if(shaded) { return mean_color(tail.color, tail.weight, UNIT); }
+    @if(!shaded) { return pool.unlit.rgb; }
+}
+
+fn over(nearest: ptr<function, array<vec3<u32>, ROOM>>, tail: Tail) -> vec4<f32> {
     var color = vec3(0.0);
     var transmittance = 1.0;
     for (var i = 0u; i < K; i++) {
@@ -57,24 +62,37 @@ fn over(nearest: ptr<function, array<vec3<u32>, K>>, tail: Tail) -> vec4<f32> {
     }
     if tail.weight > 0u {
         let behind = transmittance * transmittance_of(tail.optical);
-        color += (transmittance - behind) * mean_color(tail.color, tail.weight, UNIT);
+        color += (transmittance - behind) * tail_color(tail);
         transmittance = behind;
     }
     return vec4(color, 1.0 - transmittance);
 }
 
-fn resolve_list(head: u32) -> vec4<f32> {
-    var nearest: array<vec3<u32>, K>;
-    for (var i = 0u; i < K; i++) {
+// What the fragments of a pixel without nodes have left.
+fn rest_of(index: u32) -> Tail {
+    var tail: Tail;
+    @if(bounded) {
+        let first = SUMS * index;
+        tail.optical = min(rest[first], FULL);
+        tail.weight = min(rest[first + 1u], FULL);
+        tail.color = min(vec3(rest[first + 2u], rest[first + 3u], rest[first + 4u]), vec3(FULL));
+    }
+    return tail;
+}
+
+fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
+    var nearest: array<vec3<u32>, ROOM>;
+    for (var i = 0u; i < ROOM; i++) {
         nearest[i] = FAR;
     }
     var tail: Tail;
+    @if(shaded || unshaded) { tail = behind; }
     var next = head;
     while next != NOTHING {
         let node = nodes[next - 1u];
         next = node.w;
         var passed = node.xyz;
-        if is_before(passed, nearest[K - 1u]) {
+        if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             // The last one falls out, and those behind the new one move up.
             for (var i = 0u; i < K; i++) {
                 let held = nearest[i];
@@ -83,46 +101,47 @@ fn resolve_list(head: u32) -> vec4<f32> {
                 passed = select(passed, held, first);
             }
         }
-        add(&tail, passed);
+        @if(shaded || unshaded) { add(&tail, passed); }
     }
     return over(&nearest, tail);
+}
+
+// What the whole view has left: one thread comes here.
+fn count_fragments() {
+    let wanted = atomicLoad(&counters.fragments);
+    let without_node = max(wanted, pool.capacity) - pool.capacity;
+    counters.wanted = wanted;
+    counters.saturated = u32(wanted >= pool.limit);
+    @if(!bounded) { atomicStore(&counters.dropped, without_node); }
+    @if(bounded) {
+        let behind = atomicLoad(&counters.merged);
+        counters.saturated = u32(wanted >= pool.limit || behind > FULL);
+        atomicStore(&counters.fragments, min(wanted, FULL) + min(behind, FULL));
+        atomicStore(&counters.merged, without_node + select(0u, min(behind, FULL), pool.kept < pool.asked));
+    }
 }
 
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
            @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    if lane == 0u {
-        atomicStore(&hairy, 0u);
-    }
-    workgroupBarrier();
-    let inside = all(pixel.xy < view.size);
-    let index = pixel.y * view.size.x + pixel.x;
+    let inside = is_inside(pixel.xy);
+    let index = index_of(pixel.xy);
     var head = NOTHING;
+    var behind: Tail;
     if inside {
         head = heads[index];
+        behind = rest_of(index);
     }
-    if head != NOTHING {
-        atomicAdd(&hairy, 1u);
-    }
-    workgroupBarrier();
-    let count = atomicLoad(&hairy);
-    if lane == 0u {
-        atomicAdd(&counters.pixels_with_hair, count);
-        if count > 0u {
-            tiles[atomicAdd(&tile_vertices[0], 6u) / 6u] = group.y * groups.x + group.x;
-        }
-    }
+    let has_hair = head != NOTHING || behind.weight > 0u;
+    let count = count_hairy(has_hair, group.y * groups.x + group.x, lane);
     if lane == 0u && all(group.xy == vec2(0u)) {
-        let wanted = atomicLoad(&counters.fragments);
-        counters.wanted = wanted;
-        atomicStore(&counters.dropped, max(wanted, pool.capacity) - pool.capacity);
-        counters.saturated = u32(wanted >= pool.limit);
+        count_fragments();
     }
     if inside && count > 0u {
         var color = vec4(0.0);
-        if head != NOTHING {
-            color = resolve_list(head);
+        if has_hair {
+            color = resolve_list(head, behind);
         }
-        resolved[index] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+        write_pixel(index, color);
     }
 }

@@ -1,12 +1,20 @@
-// Fragments go to the heads of the lists of their pixels.
+// Fragments go to the heads of the lists of their pixels; where lists are bounded, the nearest do, and the others to the rest.
 
 import package::fragment::Fragment;
 import package::node::{PoolUniform, pack_node};
 import package::screen::view;
 
+@if(bounded)
+import package::kept::{is_nearest, kept_key};
+@if(bounded)
+import package::rest::add_to_rest;
+
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> nodes: array<vec4<u32>>;
+// The keys of the nearest fragments of each pixel, `pool.kept` of them, the largest first.
+@if(bounded)
+@group(0) @binding(10) var<storage, read> nearest_keys: array<u32>;
 
 // A segment is walked twice: to count, with no room, and to store. What is counted goes into the nodes from `first` on, and
 // never into more than were asked for, even if a compiler rounds the two walks differently. A node in two lists would close
@@ -15,14 +23,41 @@ struct Sink {
     first: u32,
     room: u32,
     count: u32,
+    // Fragments that are not to have a node.
+    behind: u32,
+    // 1 in the walk that stores.
+    stores: u32,
+}
+
+// Whether a fragment is to have a node.
+fn is_kept(index: u32, fragment: Fragment) -> bool {
+    @if(bounded) {
+        let last = index * pool.kept + pool.kept - 1u;
+        return pool.kept > 0u && is_nearest(kept_key(fragment.nearness), nearest_keys[last]);
+    }
+    @if(!bounded) { return true; }
+}
+
+// Puts a node at the head of the list of a pixel.
+fn link(index: u32, node: u32, fragment: Fragment) {
+    let next = atomicExchange(&heads[index], node + 1u);
+    nodes[node] = pack_node(fragment, next);
 }
 
 fn take(sink: ptr<function, Sink>, pixel: vec2<u32>, fragment: Fragment) {
+    let index = pixel.y * view.size.x + pixel.x;
+    let kept = is_kept(index, fragment);
     let node = (*sink).first + (*sink).count;
-    // One that finds no room in the pool leaves the list as it is.
-    if (*sink).count < (*sink).room && node < pool.capacity {
-        let next = atomicExchange(&heads[pixel.y * view.size.x + pixel.x], node + 1u);
-        nodes[node] = pack_node(fragment, next);
+    if kept && (*sink).count < (*sink).room && node < pool.capacity {
+        link(index, node, fragment);
+    } else {
+        // Without a rest, what finds no room leaves the list as it is.
+        @if(bounded) {
+            if (*sink).stores == 1u {
+                add_to_rest(index, fragment);
+            }
+        }
     }
-    (*sink).count++;
+    (*sink).count += u32(kept);
+    (*sink).behind += u32(!kept);
 }

@@ -11,4 +11,6 @@ struct Counters {
     saturated: u32,
     // What was to be kept: fragments, or references.
     wanted: u32,
+    // What was merged for want of room. While lists are filled, the fragments that are not to have a node.
+    merged: atomic<u32>,
 }

@@ -1,5 +1,7 @@
 //! `hair.render.fill` and `hair.render.fill_raster`: segments of strands become fragments in the lists of pixels.
 
+use tressfx_core::shader::Specialization;
+
 use super::LIBRARY;
 use crate::segments::Shaders;
 
@@ -8,3 +10,8 @@ pub(crate) const SHADERS: Shaders = Shaders {
     raster: ("hair.render.fill_raster", ("fill_raster", include_str!("../../shaders/ppll/fill_raster.wgsl"))),
     library: LIBRARY,
 };
+
+/// Whether only the nearest fragments of a pixel have nodes.
+pub(crate) fn bounded(on: bool) -> Specialization {
+    Specialization::new().feature("bounded", on)
+}

@@ -9,7 +9,9 @@ use tressfx_core::shader::Binding;
 
 use super::PpllDesc;
 use crate::counters::ViewCounters;
+use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
+use crate::usage::is_surplus;
 use crate::views::BoundView;
 
 /// Bytes of a fragment: depth key, colour and alpha, next.
@@ -24,9 +26,26 @@ gpu_struct! {
         pub limit: u32,
         /// Requests up to this one are added without a look at the limit.
         pub small_request: u32,
+        /// Where not all fragments have a node: how many of a pixel have.
+        pub kept: u32,
+        /// How many of a pixel were to have one.
+        pub asked: u32,
         /// Nothing.
-        pub unused: u32,
+        pub unused_0: u32,
+        /// Nothing.
+        pub unused_1: u32,
+        /// Nothing.
+        pub unused_2: u32,
+        /// The colour of a tail that is not shaded.
+        pub unlit: [f32; 4],
     }
+}
+
+/// Nodes that are not in use yet.
+#[derive(Debug)]
+pub(crate) struct Nodes {
+    buffer: BufferId,
+    capacity: u32,
 }
 
 /// Lists of fragments, one a pixel.
@@ -42,8 +61,10 @@ pub(crate) struct NodePool {
     pub(crate) uniform: BufferId,
     /// How many fragments there is room for.
     pub(crate) capacity: u32,
+    /// How many there is room for at least.
+    least: u32,
     /// How many there may be room for.
-    largest: u32,
+    pub(crate) largest: u32,
     count_limit: u32,
 }
 
@@ -61,33 +82,54 @@ impl NodePool {
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
-        Ok(Self { heads, nodes, counters, uniform, capacity, largest, count_limit })
+        Ok(Self { heads, nodes, counters, uniform, capacity, least: capacity, largest, count_limit })
     }
 
-    /// Makes room for `wanted` fragments, or for as many as are allowed. What the pool held is lost.
-    pub(crate) fn grow(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
+    /// Nodes for `wanted` fragments, or for as many as are allowed, where there is less room; it changes nothing yet.
+    pub(crate) fn prepare(&self, backend: &mut dyn Backend, wanted: u64) -> Result<Option<Nodes>> {
         let capacity = wanted.min(u64::from(self.largest)) as u32;
-        if capacity <= self.capacity {
-            return Ok(());
-        }
-        // The new nodes come first: if they cannot be made, the pool is as it was. To destroy the old ones before would free
-        // nothing yet, since older lists may still name them.
-        let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
-        backend.destroy(std::mem::replace(&mut self.nodes, nodes).into());
-        self.capacity = capacity;
-        Ok(())
+        if capacity > self.capacity { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
     }
 
-    /// Sets the counters of views to zero, and says what the limits are when so many groups ask for room.
-    pub(crate) fn begin(&self, list: &mut PassList, views: usize, groups: u64) {
+    /// Nodes for `needed` fragments and some more, where there is much more room; it changes nothing yet.
+    pub(crate) fn prepare_smaller(&self, backend: &mut dyn Backend, needed: u64) -> Result<Option<Nodes>> {
+        let capacity = with_headroom(needed).clamp(u64::from(self.least), u64::from(self.largest)) as u32;
+        let shrinks = capacity < self.capacity && is_surplus(self.capacity.into(), needed);
+        if shrinks { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
+    }
+
+    fn nodes_for(&self, backend: &mut dyn Backend, capacity: u32) -> Result<Nodes> {
+        // To destroy the old nodes before would free nothing yet, since older lists may still name them.
+        let buffer = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
+        Ok(Nodes { buffer, capacity })
+    }
+
+    /// Uses other nodes. What the pool held is lost.
+    pub(crate) fn replace(&mut self, backend: &mut dyn Backend, nodes: Nodes) {
+        backend.destroy(std::mem::replace(&mut self.nodes, nodes.buffer).into());
+        self.capacity = nodes.capacity;
+    }
+
+    /// Sets the counters of views to zero.
+    pub(crate) fn begin(&self, list: &mut PassList, views: usize) {
+        self.counters.clear(list, views);
+    }
+
+    /// What the limits are when so many groups ask for room, of the nearest fragments of a pixel as many as are `kept` of those
+    /// that are `asked` for, and what colour a tail has that is not shaded.
+    pub(crate) fn upload(&self, list: &mut PassList, groups: u64, [kept, asked]: [u32; 2], unlit: [f32; 4]) {
         let uniform = PoolUniform {
             capacity: self.capacity,
             limit: self.count_limit,
             small_request: (u64::from(self.count_limit) / groups.max(1)) as u32,
-            unused: 0,
+            kept,
+            asked,
+            unused_0: 0,
+            unused_1: 0,
+            unused_2: 0,
+            unlit,
         };
         list.upload(self.uniform, 0, &[uniform]);
-        self.counters.clear(list, views);
     }
 
     /// What the shaders that fill it bind of it.

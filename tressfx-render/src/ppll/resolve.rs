@@ -1,33 +1,73 @@
 //! `hair.render.resolve`: the list of each pixel becomes one colour.
 
+use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Kernel, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Specialization};
 
-use super::LIBRARY;
 use super::pool::NodePool;
+use super::{LIBRARY, Tail};
 use crate::bound::Bound;
 use crate::resolved::{Resolved, TILE};
 use crate::shaders::compute;
 use crate::views::BoundView;
 
 /// Fragments of a pixel that may be sorted exactly.
-pub const K_RANGE: RangeInclusive<u32> = 1..=16;
+pub const K_RANGE: RangeInclusive<u32> = 0..=32;
 
+/// What a kernel is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Variant {
+    pub(crate) k: u32,
+    pub(crate) tail: Tail,
+    /// Whether there is a rest of fragments without nodes.
+    pub(crate) bounded: bool,
+}
+
+impl Variant {
+    fn specialization(&self) -> Specialization {
+        Specialization::new()
+            .feature("shaded", self.tail == Tail::Shaded)
+            .feature("unshaded", self.tail == Tail::Unshaded)
+            .feature("bounded", self.bounded)
+            .constant("K", self.k)
+    }
+}
+
+/// Kernels that were needed, and the one that is in use.
 #[derive(Debug)]
 pub(crate) struct Resolve {
-    pub(crate) kernel: Kernel,
-    pub(crate) bound: Bound<usize>,
+    kernels: HashMap<Variant, Kernel>,
+    variant: Variant,
+    pub(crate) bound: Bound<(usize, Variant)>,
 }
 
 impl Resolve {
-    pub(crate) fn new(backend: &mut dyn Backend, k: u32) -> Result<Self> {
-        let root = ("resolve", include_str!("../../shaders/ppll/resolve.wgsl"));
-        let kernel = compute(backend, "hair.render.resolve", root, LIBRARY, &Specialization::new().constant("K", k))?;
-        Ok(Self { kernel, bound: Bound::new() })
+    pub(crate) fn new(backend: &mut dyn Backend, variant: Variant) -> Result<Self> {
+        let kernels = HashMap::from([(variant, kernel(backend, variant)?)]);
+        Ok(Self { kernels, variant, bound: Bound::new() })
+    }
+
+    /// Compiles a variant, unless it was before.
+    pub(crate) fn prepare(&self, backend: &mut dyn Backend, variant: Variant) -> Result<Option<Kernel>> {
+        if self.kernels.contains_key(&variant) { Ok(None) } else { kernel(backend, variant).map(Some) }
+    }
+
+    /// Uses a variant from now on, and keeps what was prepared for it.
+    pub(crate) fn change(&mut self, variant: Variant, prepared: Option<Kernel>) {
+        if let Some(kernel) = prepared {
+            self.kernels.insert(variant, kernel);
+        }
+        self.variant = variant;
+    }
+
+    /// The one that is in use.
+    #[cfg(test)]
+    pub(crate) fn kernel(&self) -> &Kernel {
+        &self.kernels[&self.variant]
     }
 
     pub(crate) fn pass(
@@ -36,9 +76,12 @@ impl Resolve {
         view: &BoundView,
         pool: &NodePool,
         resolved: &Resolved,
+        rest: Option<(&'static str, Binding)>,
     ) -> Result<()> {
-        let bindings = self.bound.get(view.index, || {
-            self.kernel.bind(&[
+        let Self { kernels, variant, bound } = self;
+        let kernel = &kernels[variant];
+        let bindings = bound.get((view.index, *variant), || {
+            let own = [
                 ("view", view.uniform),
                 ("pool", pool.uniform.into()),
                 ("heads", pool.heads.into()),
@@ -47,9 +90,15 @@ impl Resolve {
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
                 ("tile_vertices", resolved.draw.into()),
-            ])
+            ];
+            kernel.bind(&own.into_iter().chain(rest).collect::<Vec<_>>())
         })?;
-        list.compute(&self.kernel, &bindings, Grid::for_image(view.size, TILE));
+        list.compute(kernel, &bindings, Grid::for_image(view.size, TILE));
         Ok(())
     }
+}
+
+fn kernel(backend: &mut dyn Backend, variant: Variant) -> Result<Kernel> {
+    let root = ("resolve", include_str!("../../shaders/ppll/resolve.wgsl"));
+    compute(backend, "hair.render.resolve", root, LIBRARY, &variant.specialization())
 }

@@ -5,8 +5,11 @@ use tressfx_core::view::View;
 
 use super::fill::fill_projected;
 use super::projection::Projection;
-use super::{Fragment, Strands, resolve, shade, shortcut_colors, shortcut_depths, shortcut_resolve};
+use super::{
+    Fragment, Strands, resolve, resolve_with_tail, shade, shortcut_colors, shortcut_depths, shortcut_resolve, xyz,
+};
 use crate::lights::Lights;
+use crate::ppll::Tail;
 
 /// The picture with every fragment kept and put in order.
 pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([u32; 2]) -> f32) -> Vec<DVec4> {
@@ -23,6 +26,22 @@ pub fn resolved(
 ) -> Vec<DVec4> {
     let mut lists = lists(view, lights, strands, scene, 1);
     lists.iter_mut().map(|list| resolve(list, k)).collect()
+}
+
+/// The same with something else behind the `k` nearest.
+pub fn resolved_with_tail(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+    k: usize,
+    tail: Tail,
+) -> Vec<DVec4> {
+    let segments = |of: &Strands| f64::from(of.uniform.strands * (of.uniform.vertices - 1));
+    let sum: DVec3 = strands.iter().map(|of| xyz(&of.uniform.base) * segments(of)).sum();
+    let unlit = sum / strands.iter().map(segments).sum::<f64>();
+    let mut lists = lists(view, lights, strands, scene, 1);
+    lists.iter_mut().map(|list| resolve_with_tail(list, k, tail, unlit)).collect()
 }
 
 /// The picture from the `k` nearest fragments of each pixel, in order or as their mean, with the opacity of all.

@@ -3,10 +3,16 @@
 use glam::{DVec3, DVec4};
 
 use super::Fragment;
+use crate::ppll::Tail;
 
 /// The colour of a pixel, premultiplied, and its alpha: the `k` nearest of its fragments in order, behind them the average
 /// colour of the rest with its true opacity. With `k` not below the number of fragments that is the exact result.
 pub fn resolve(fragments: &mut [Fragment], k: usize) -> DVec4 {
+    resolve_with_tail(fragments, k, Tail::Shaded, DVec3::ZERO)
+}
+
+/// The same with something else behind the `k` nearest; `unlit` is the colour of a tail that is not shaded.
+pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, tail: Tail, unlit: DVec3) -> DVec4 {
     fragments.sort_by(|a, b| b.nearness.total_cmp(&a.nearness));
     let (nearest, rest) = fragments.split_at(k.min(fragments.len()));
     let (mut color, mut transmittance) = (DVec3::ZERO, 1.0);
@@ -15,10 +21,10 @@ pub fn resolve(fragments: &mut [Fragment], k: usize) -> DVec4 {
         transmittance *= 1.0 - fragment.alpha;
     }
     let weight: f64 = rest.iter().map(|fragment| fragment.alpha).sum();
-    if weight > 0.0 {
+    if weight > 0.0 && tail != Tail::None {
         let average = rest.iter().map(|fragment| fragment.alpha * fragment.color).sum::<DVec3>() / weight;
         let behind = rest.iter().fold(transmittance, |left, fragment| left * (1.0 - fragment.alpha));
-        color += (transmittance - behind) * average;
+        color += (transmittance - behind) * if tail == Tail::Shaded { average } else { unlit };
         transmittance = behind;
     }
     color.extend(1.0 - transmittance)

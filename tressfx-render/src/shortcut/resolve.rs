@@ -9,10 +9,11 @@ use super::ShortCutDesc;
 use super::memory::Memory;
 use crate::bound::Bound;
 use crate::resolved::TILE;
-use crate::shaders::{compute, with_shared};
+use crate::shaders::{PIXELS, compute, with_shared};
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<1, 14>([("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
+const LIBRARY: &[Module] =
+    &with_shared::<2, 15>([PIXELS, ("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
 
 #[derive(Debug)]
 pub(crate) struct Resolve {

@@ -10,8 +10,9 @@ use tressfx_core::uniform_array::UniformArray;
 use super::TilesDesc;
 use super::layout::{SLICES, TilesUniform};
 use crate::counters::ViewCounters;
-use crate::renderer::HEADROOM;
+use crate::renderer::{HEADROOM, with_headroom};
 use crate::resolved::{Resolved, pixels, storage, tile_count};
+use crate::usage::is_surplus;
 use crate::views::MAX_VIEWS;
 
 /// Kinds of tiles by the number of their references.
@@ -25,6 +26,9 @@ pub(crate) const UNIFORMS_OF_A_VIEW: usize = 1 + MAX_ROUNDS as usize;
 
 /// Rounds in which tiles may be blended.
 pub(crate) const MAX_ROUNDS: u32 = 64;
+
+/// References that there is room for at least, unless fewer are allowed.
+const LEAST_REFERENCES: u32 = 1 << 16;
 
 /// Bytes of a grid of groups.
 const GROUPS_BYTES: u64 = 12;
@@ -161,7 +165,7 @@ impl Memory {
         Ok(Self {
             most_references,
             vertices: Vertices::new(backend, 0)?,
-            references: References::new(backend, most_references.min(1 << 16))?,
+            references: References::new(backend, most_references.min(LEAST_REFERENCES))?,
             screen: Screen::new(backend, size)?,
             groups: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_groups", GROUPS_BYTES))?,
             counters: ViewCounters::new(backend)?,
@@ -202,6 +206,25 @@ impl Memory {
             let grown = Vertices::new(backend, wanted)?;
             let old = std::mem::replace(&mut self.vertices, grown);
             [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        }
+        Ok(())
+    }
+
+    /// Gives back what is much more than is needed.
+    pub(crate) fn shrink(&mut self, backend: &mut dyn Backend, references: u64, vertices: u64) -> Result<()> {
+        let wanted = with_headroom(references).max(LEAST_REFERENCES.into());
+        let count = wanted.min(self.most_references.into()) as u32;
+        let shrinks = count < self.references.count && is_surplus(self.references.count.into(), references);
+        let smaller = if shrinks { Some(References::new(backend, count)?) } else { None };
+        if is_surplus(self.vertices.count, vertices) {
+            let smaller = Vertices::new(backend, vertices)?;
+            let old = std::mem::replace(&mut self.vertices, smaller);
+            [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        }
+        if let Some(smaller) = smaller {
+            backend.destroy(std::mem::replace(&mut self.references, smaller).buffer.into());
+        } else if self.references.rounds > 1 && wanted <= u64::from(self.references.count) {
+            self.references.rounds = 1;
         }
         Ok(())
     }

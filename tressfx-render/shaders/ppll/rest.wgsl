@@ -1,0 +1,29 @@
+// What the fragments of a pixel leave that have no node: the sums that a tail is made of.
+
+import package::fragment::{Fragment, pack_color, packed_color};
+import package::sums::{optical_depth, weighted};
+
+// Sums of a pixel: of optical depths, of alphas, and of red, green and blue, weighted by alpha.
+const SUMS: u32 = 5u;
+// Of colours: there is room for 131 thousand white fragments.
+const UNIT: f32 = 16384.0;
+
+@group(0) @binding(11) var<storage, read_write> rest: array<atomic<u32>>;
+
+// A sum that overflows sets its highest bit, and every later overflow does so again: in the end the bit is set if there was
+// any, in whatever order threads came.
+fn add(place: u32, value: u32) {
+    if atomicAdd(&rest[place], value) > 0xffffffffu - value {
+        atomicOr(&rest[place], 0x80000000u);
+    }
+}
+
+// The colour is that of a node, so that a tail has the same sums, whichever way its fragments came to it.
+fn add_to_rest(index: u32, fragment: Fragment) {
+    let color = weighted(packed_color(pack_color(fragment)), fragment.alpha, UNIT);
+    add(SUMS * index, optical_depth(fragment.alpha));
+    add(SUMS * index + 1u, fragment.alpha);
+    add(SUMS * index + 2u, color.r);
+    add(SUMS * index + 3u, color.g);
+    add(SUMS * index + 4u, color.b);
+}

@@ -1,0 +1,180 @@
+//! Lists that do not hold all fragments: the nearest of each pixel have nodes, the others are added to the rest of their pixel.
+//!
+//! A first walk finds the nearest, so that it does not depend on the order in which fragments come which of them these are. The
+//! rest consists of the sums of integers that the tail of a list is made of. So the picture is the same to the bit as that of lists
+//! with room for all, as long as the nearest find room.
+
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::error::{Need, Result};
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
+
+use super::{fill, nearest};
+use crate::resolved::{pixels, storage};
+use crate::segments::{Fill, Segments};
+
+/// Bytes of the sums of a pixel: see `rest.wgsl`.
+const REST_BYTES: u64 = 20;
+
+/// What such lists have beside a pool. Kernels are compiled when they are first needed, and kept; memory is freed when it is no
+/// longer needed.
+#[derive(Debug, Default)]
+pub(crate) struct Bounded {
+    kernels: Option<Kernels>,
+    memory: Option<Memory>,
+}
+
+/// What was made and is not in use yet: if something else fails, it is forgotten.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    kernels: Option<Kernels>,
+    memory: Memory,
+}
+
+#[derive(Debug)]
+struct Kernels {
+    nearest: Segments,
+    fill: Segments,
+}
+
+#[derive(Debug)]
+struct Memory {
+    /// `u32` each: the keys of the nearest fragments of a pixel.
+    keys: BufferId,
+    /// Five `u32` a pixel.
+    rest: BufferId,
+    /// Bytes of both.
+    sizes: [u64; 2],
+    /// Fragments of a pixel that there are keys for.
+    asked: u32,
+}
+
+impl Memory {
+    fn new(backend: &mut dyn Backend, size: [u32; 2], asked: u32) -> Result<Self> {
+        let sizes = sizes(size, asked);
+        let keys = storage(backend, "hair.render.nearest_keys", sizes[0])?;
+        Ok(Self { keys, rest: storage(backend, "hair.render.rest", sizes[1])?, sizes, asked })
+    }
+
+    fn destroy(self, backend: &mut dyn Backend) {
+        [self.keys, self.rest].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
+}
+
+fn sizes(size: [u32; 2], asked: u32) -> [u64; 2] {
+    [4 * u64::from(asked), REST_BYTES].map(|bytes| (bytes * pixels(size)).max(16))
+}
+
+/// Whether a device can have such lists for a picture of this size.
+pub(crate) fn check(backend: &dyn Backend, size: [u32; 2], asked: u32) -> Result<()> {
+    let largest = sizes(size, asked).into_iter().max().unwrap_or(0);
+    backend.caps().check("hair.render", &[Need::StorageBuffers(8), Need::StorageBindingBytes(largest)])
+}
+
+impl Bounded {
+    /// Whether lists are bounded at present.
+    pub(crate) fn is_on(&self) -> bool {
+        self.memory.is_some()
+    }
+
+    /// Makes what it takes to keep `asked` fragments of a pixel, and changes nothing yet.
+    pub(crate) fn prepare(
+        &self,
+        backend: &mut dyn Backend,
+        size: [u32; 2],
+        asked: u32,
+        fill: Fill,
+        target: Format,
+    ) -> Result<Prepared> {
+        check(backend, size, asked)?;
+        let make = |backend: &mut dyn Backend| {
+            let fill = Segments::new(backend, fill, &fill::SHADERS, &fill::bounded(true), target)?;
+            Ok(Kernels { nearest: nearest::pass(backend)?, fill })
+        };
+        let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
+        Ok(Prepared { kernels, memory: Memory::new(backend, size, asked)? })
+    }
+
+    /// Bounds lists with what was prepared.
+    pub(crate) fn turn_on(&mut self, backend: &mut dyn Backend, prepared: Prepared) {
+        if let Some(kernels) = prepared.kernels {
+            self.kernels = Some(kernels);
+        }
+        if let Some(old) = self.memory.replace(prepared.memory) {
+            old.destroy(backend);
+        }
+        self.forget_bindings();
+    }
+
+    /// Frees the memory.
+    pub(crate) fn turn_off(&mut self, backend: &mut dyn Backend) {
+        if let Some(memory) = self.memory.take() {
+            memory.destroy(backend);
+        }
+        self.forget_bindings();
+    }
+
+    pub(crate) fn forget_bindings(&mut self) {
+        if let Some(kernels) = &mut self.kernels {
+            kernels.nearest.forget_bindings();
+            kernels.fill.forget_bindings();
+        }
+    }
+
+    pub(crate) fn begin_frame(&mut self) {
+        if let Some(kernels) = &mut self.kernels {
+            kernels.nearest.begin_frame();
+            kernels.fill.begin_frame();
+        }
+    }
+
+    /// How many fragments of a pixel can be kept; 0 where lists are not bounded.
+    pub(crate) fn asked(&self) -> u32 {
+        self.memory.as_ref().map_or(0, |memory| memory.asked)
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        self.memory.as_ref().map_or(0, |memory| memory.sizes.iter().sum())
+    }
+
+    /// What `hair.render.resolve` reads.
+    pub(crate) fn rest(&self) -> Option<(&'static str, Binding)> {
+        self.memory.as_ref().map(|memory| ("rest", memory.rest.into()))
+    }
+
+    /// The passes, where lists are bounded: the walk that finds the `kept` nearest, and the one that stores. Empties the memory
+    /// before.
+    pub(crate) fn passes(&mut self) -> Option<Passes<'_>> {
+        let (kernels, memory) = (self.kernels.as_mut()?, self.memory.as_ref()?);
+        let keys = ("nearest_keys", memory.keys.into());
+        let rest = ("rest", memory.rest.into());
+        Some(Passes {
+            nearest: &mut kernels.nearest,
+            fill: &mut kernels.fill,
+            keys,
+            rest,
+            buffers: [memory.keys, memory.rest],
+        })
+    }
+}
+
+/// What the passes of a view need.
+pub(crate) struct Passes<'a> {
+    pub(crate) nearest: &'a mut Segments,
+    pub(crate) fill: &'a mut Segments,
+    pub(crate) keys: (&'static str, Binding),
+    pub(crate) rest: (&'static str, Binding),
+    buffers: [BufferId; 2],
+}
+
+impl Passes<'_> {
+    /// Empties the memory for a view.
+    pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], kept: u32) {
+        let [keys, rest] = self.buffers;
+        list.clear(rest, 0, REST_BYTES * pixels(size));
+        if kept > 0 {
+            list.clear(keys, 0, 4 * u64::from(kept) * pixels(size));
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! `hair.render.nearest`: the keys of the nearest fragments of each pixel, where lists do not hold all of them.
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::shader::Module;
+
+use crate::segments::Segments;
+use crate::shaders::with_shared;
+
+const LIBRARY: &[Module] = &with_shared::<3, 16>([
+    ("kept", include_str!("../../shaders/ppll/kept.wgsl")),
+    ("node", include_str!("../../shaders/ppll/node.wgsl")),
+    ("sink", include_str!("../../shaders/ppll/nearest_sink.wgsl")),
+]);
+
+/// The pass. It is of compute even where fragment shaders fill the lists behind it: what it finds is the same.
+pub(crate) fn pass(backend: &mut dyn Backend) -> Result<Segments> {
+    let root = ("nearest", include_str!("../../shaders/ppll/nearest.wgsl"));
+    Segments::compute(backend, "hair.render.nearest", root, LIBRARY)
+}
