@@ -170,6 +170,11 @@ impl<B: Run> Show<B> {
         (picture, Counters::from_bytes(&self.backend.read(counters).ready().expect("the list has run")))
     }
 
+    /// What the renderer has room for.
+    pub fn capacity(&self) -> u32 {
+        self.renderer.capacity()
+    }
+
     /// Positions of all strands, as the GPU has them.
     pub fn positions(&mut self) -> Vec<u8> {
         let mut list = PassList::new();

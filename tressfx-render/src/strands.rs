@@ -55,7 +55,7 @@ impl StrandInfo {
             (ends.map(|end| strands.rest[end].truncate()), ends.map(|end| strands.thickness[end]))
         };
         let count = segments.min(MAX_SAMPLES);
-        let sample = (0..count).map(|i| segment(i * segments / count)).collect();
+        let sample = (0..count).map(|i| segment(sampled(i, count, segments))).collect();
         let fitting_radius = fitting_radius(strands);
         let visibility = visibility::visibility(strands, fitting_radius / strands.metres_per_unit);
         let visibility = strands.interleave(&visibility);
@@ -66,6 +66,13 @@ impl StrandInfo {
     pub(crate) fn radius(&self, material: &Material) -> f32 {
         material.fibre_radius.unwrap_or(self.fitting_radius) / self.metres_per_unit
     }
+}
+
+/// The segment of sample `i` of `count`: each is taken from its own part of all segments, at places that do not repeat. With equal
+/// steps a groom whose strands are a multiple of the samples would be known by the first segments of its strands alone.
+fn sampled(i: usize, count: usize, segments: usize) -> usize {
+    let golden = (i as f64 * 0.618_033_988_749_894_9).fract();
+    (((i as f64 + golden) * segments as f64 / count as f64) as usize).min(segments - 1)
 }
 
 /// The radius with which the strands would cover the sides of the groom's bounds [`DENSE_LAYERS`] times, clamped to between
@@ -186,5 +193,21 @@ impl<'a> SectionDraw<'a> {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.strands.buffers.shape.segments() == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_come_from_all_parts_of_strands() {
+        // As many segments a strand as there are segments between two samples.
+        let (strands, parts) = (MAX_SAMPLES, 31);
+        let mut taken = [0; 31];
+        (0..MAX_SAMPLES).for_each(|i| taken[sampled(i, MAX_SAMPLES, strands * parts) % parts] += 1);
+        let even = MAX_SAMPLES as u32 / parts as u32;
+        assert!(taken.iter().all(|&count: &u32| count.abs_diff(even) <= even / 10), "{taken:?}");
+        assert!((0..5).all(|i| sampled(i, 5, 5) == i), "all of them where there are few");
     }
 }
