@@ -147,8 +147,10 @@ fn everything() -> PassList {
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let lights = Lights::default();
-    let techniques: [Technique; 7] = [
+    let techniques: [Technique; 8] = [
         PpllDesc::default().into(),
+        // No room for all fragments.
+        PpllDesc::default().max_node_bytes(16 * 8).into(),
         PpllDesc::default().fill(Fill::Raster).into(),
         ShortCutDesc::default().into(),
         ShortCutDesc::default().ordered(true).into(),
