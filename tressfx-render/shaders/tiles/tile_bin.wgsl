@@ -57,15 +57,16 @@ fn distances_of(nearness: vec2<f32>) -> vec2<f32> {
     return vec2(distance.x - margin.x, distance.y + margin.y);
 }
 
-// Rows that a ribbon may touch in columns: the first and the last, none where the last is before the first.
+// No rows: the last is before the first, and others can be joined to it.
+const NO_ROWS: vec2<i32> = vec2(0x7fffffff, -1);
+
+// Rows that a ribbon may touch in columns: the first and the last.
 fn rows_of(span: Span, columns: vec2<i32>) -> vec2<i32> {
-    if columns.x > columns.y {
-        return vec2(0, -1);
-    }
     let middles = vec2(middle_of(span, columns.x), middle_of(span, columns.y));
     let reach = span.half_height + PIXEL_MARGIN;
     let first = max(i32(ceil(min(middles.x, middles.y) - reach)), 0);
-    return vec2(first, min(i32(floor(max(middles.x, middles.y) + reach)), span.size.y - 1));
+    let last = min(i32(floor(max(middles.x, middles.y) + reach)), span.size.y - 1);
+    return select(vec2(first, last), NO_ROWS, columns.x > columns.y || first > last);
 }
 
 // The quarters of the tile in a row of tiles that are touched by rows in the first and in the second half of its columns: bits of
@@ -87,8 +88,7 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
     let middle = tile_column * edge + edge / 2;
     let first = rows_of(span, vec2(columns.x, min(columns.y, middle - 1)));
     let second = rows_of(span, vec2(max(columns.x, middle), columns.y));
-    let rows = vec2(min(select(first.x, second.x, first.y < first.x), select(second.x, first.x, second.y < second.x)),
-                    max(first.y, second.y));
+    let rows = vec2(min(first.x, second.x), max(first.y, second.y));
     if rows.x > rows.y {
         return;
     }
