@@ -45,22 +45,12 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
 
-    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit.
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()>;
+    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit, and
+    /// makes room for the vertices of sections, where the technique keeps any.
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64, draws: &[SectionDraw]) -> Result<()>;
 
     /// Makes room for what a view has needed. Returns whether there is another room than before.
-    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        let before = self.capacity();
-        if counters.wanted > before {
-            self.reserve(backend, counters.wanted.into())?;
-        }
-        Ok(self.capacity() > before)
-    }
-
-    /// Makes room for the vertices of sections, where the technique keeps any.
-    fn reserve_vertices(&mut self, _: &mut dyn Backend, _: &[SectionDraw]) -> Result<()> {
-        Ok(())
-    }
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool>;
 
     /// Changes what can be changed from frame to frame.
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()>;

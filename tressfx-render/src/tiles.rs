@@ -119,9 +119,10 @@ impl TechniqueInstance for Tiles {
         predict::references(view, draws).min(self.memory.largest_round())
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {
-        self.usage.expect([references, 0]);
-        let grown = self.memory.grow_references(backend, with_headroom(references));
+    fn reserve(&mut self, backend: &mut dyn Backend, references: u64, draws: &[SectionDraw]) -> Result<()> {
+        let vertices = layout::vertices(draws);
+        self.usage.expect([references, vertices]);
+        let grown = self.memory.grow(backend, with_headroom(references), vertices);
         self.forget_bindings();
         grown
     }
@@ -129,21 +130,17 @@ impl TechniqueInstance for Tiles {
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = self.capacity();
         if counters.wanted > before {
-            self.reserve(backend, counters.wanted.into())?;
+            self.reserve(backend, counters.wanted.into(), &[])?;
         }
-        let has_more_room = self.capacity() > before;
-        if let Some([references, vertices]) = self.usage.measured([counters.wanted.into(), 0]) {
+        let settled = self.usage.measured([counters.wanted.into(), 0]);
+        if self.capacity() > before {
+            return Ok(true);
+        }
+        if let Some([references, vertices]) = settled {
             self.memory.shrink(backend, references, vertices)?;
             self.forget_bindings();
         }
-        Ok(has_more_room)
-    }
-
-    fn reserve_vertices(&mut self, backend: &mut dyn Backend, draws: &[SectionDraw]) -> Result<()> {
-        self.usage.expect([0, layout::vertices(draws)]);
-        let grown = self.memory.grow_vertices(backend, layout::vertices(draws));
-        self.forget_bindings();
-        grown
+        Ok(false)
     }
 
     fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
