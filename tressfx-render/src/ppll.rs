@@ -36,6 +36,10 @@ pub use tail::Tail;
 
 const LABEL: Label = "hair.render.ppll";
 
+/// Lists that were bounded hold all fragments again where there may be room for so many times as many: a third walk less is worth more
+/// than the full headroom of a pool.
+const SPARE: f64 = 1.1;
+
 /// What the kernels of this technique import.
 const LIBRARY: &[Module] = &with_shared::<5, 18>([
     PIXELS,
@@ -217,12 +221,12 @@ impl Ppll {
 
     /// Holds all fragments again where they have room. Returns whether it does.
     fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<bool> {
-        let nodes = with_headroom(fragments);
-        if self.desc.cap.is_some() || !self.bounded.is_on() || nodes > u64::from(self.pool.largest) {
+        let has_room = fragments as f64 * SPARE <= f64::from(self.pool.largest);
+        if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
             return Ok(false);
         }
         let kernel = self.resolve.prepare(backend, self.desc.variant(false))?;
-        if let Some(nodes) = self.pool.prepare(backend, nodes)? {
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments))? {
             self.pool.replace(backend, nodes);
         }
         self.resolve.change(self.desc.variant(false), kernel);
@@ -245,6 +249,27 @@ impl Ppll {
         if self.bounded.is_on() && fits > u64::from(self.kept) {
             self.kept = fits.min(u64::from(self.bounded.asked())) as u32;
         }
+        Ok(())
+    }
+
+    /// Fragments that there may be room for.
+    pub(crate) fn largest(&self) -> u32 {
+        self.pool.largest
+    }
+
+    /// Gives back all that was reserved.
+    pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        let variant = self.desc.variant(self.desc.cap.is_some());
+        let kernel = self.resolve.prepare(backend, variant)?;
+        if let Some(nodes) = self.pool.prepare_smaller(backend, 0)? {
+            self.pool.replace(backend, nodes);
+        }
+        self.resolve.change(variant, kernel);
+        if self.desc.cap.is_none() {
+            self.bounded.turn_off(backend);
+        }
+        (self.unproven, self.usage) = (None, Usage::new());
+        self.forget_bindings();
         Ok(())
     }
 

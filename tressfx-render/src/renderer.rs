@@ -140,6 +140,11 @@ impl HairRenderer {
         self.order.bytes()
     }
 
+    /// Whether tiles draw the next frame: [`Technique::Auto`] may choose them, and lists again.
+    pub fn uses_tiles(&self) -> bool {
+        self.order.uses_tiles()
+    }
+
     /// How many fragments the pool can hold at present, or references where the technique has tiles; all that can be counted
     /// where it has none.
     pub fn capacity(&self) -> u32 {

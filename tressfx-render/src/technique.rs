@@ -9,6 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
+use crate::auto::{Auto, AutoDesc};
 use crate::counters::Counters;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
@@ -27,6 +28,8 @@ pub enum Technique {
     ShortCut(ShortCutDesc),
     /// All fragments of each pixel in order, in tiles, until nothing more is seen.
     Tiles(TilesDesc),
+    /// Lists or tiles, by what was measured in the frames before.
+    Auto(AutoDesc),
 }
 
 impl Default for Technique {
@@ -54,6 +57,11 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
 
     /// Changes what can be changed from frame to frame.
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()>;
+
+    /// Whether tiles draw the next frame.
+    fn uses_tiles(&self) -> bool {
+        false
+    }
 
     /// How much the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
@@ -100,6 +108,7 @@ impl Technique {
         match self {
             Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
             Self::Tiles(desc) => Ok(Box::new(Tiles::new(backend, desc, size, target)?)),
+            Self::Auto(desc) => Ok(Box::new(Auto::new(backend, desc, size, target)?)),
             Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, target)?)),
         }
     }

@@ -30,6 +30,7 @@ use memory::Memory;
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
+pub(crate) use layout::vertices;
 
 /// Exact order in tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +96,34 @@ impl Tiles {
         })
     }
 
+    /// Makes room for so many references and some more, and for vertices.
+    pub(crate) fn reserve_counts(&mut self, backend: &mut dyn Backend, references: u64, vertices: u64) -> Result<()> {
+        self.usage.expect([references, vertices]);
+        let grown = self.memory.grow(backend, with_headroom(references), vertices);
+        self.forget_bindings();
+        grown
+    }
+
+    /// Gives back all that was reserved.
+    pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        self.usage = Usage::new();
+        let released = self.memory.shrink(backend, 0, 0);
+        self.forget_bindings();
+        released
+    }
+
+    /// Memory for views of another size, with room for nothing yet.
+    pub(crate) fn memory(backend: &mut dyn Backend, desc: &TilesDesc, size: [u32; 2]) -> Result<Memory> {
+        check(backend, size)?;
+        Memory::new(backend, size, desc)
+    }
+
+    /// Uses other memory.
+    pub(crate) fn replace_memory(&mut self, backend: &mut dyn Backend, memory: Memory) {
+        std::mem::replace(&mut self.memory, memory).destroy(backend);
+        self.forget_bindings();
+    }
+
     fn forget_bindings(&mut self) {
         self.kernels.forget_bindings();
         self.composite.bound.clear();
@@ -120,11 +149,7 @@ impl TechniqueInstance for Tiles {
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, references: u64, draws: &[SectionDraw]) -> Result<()> {
-        let vertices = layout::vertices(draws);
-        self.usage.expect([references, vertices]);
-        let grown = self.memory.grow(backend, with_headroom(references), vertices);
-        self.forget_bindings();
-        grown
+        self.reserve_counts(backend, references, layout::vertices(draws))
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
@@ -150,6 +175,10 @@ impl TechniqueInstance for Tiles {
         }
         self.desc = *desc;
         Ok(())
+    }
+
+    fn uses_tiles(&self) -> bool {
+        true
     }
 
     fn capacity(&self) -> u32 {

@@ -237,6 +237,16 @@ impl Memory {
         tiles.iter().chain(&vertices).sum::<u64>() + references + rest
     }
 
+    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
+        self.screen.destroy(backend);
+        self.counters.destroy(backend);
+        self.uniforms.destroy(backend);
+        let Vertices { points, paints, .. } = self.vertices;
+        [points, paints, self.references.buffer, self.groups]
+            .into_iter()
+            .for_each(|buffer| backend.destroy(buffer.into()));
+    }
+
     /// What the kernels of a view are given: for counting, or for a round.
     pub(crate) fn uniform(&self, view: usize, round: Option<u32>) -> Binding {
         self.uniforms.binding(view * UNIFORMS_OF_A_VIEW + round.map_or(0, |round| 1 + round as usize))
