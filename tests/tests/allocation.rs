@@ -2,13 +2,15 @@
 
 use tressfx_conformance::failing::Failing;
 use tressfx_conformance::sim::random_strands;
-use tressfx_core::backend::{Caps, Format};
+use tressfx_core::backend::{Backend, Caps, DepthOrder, Format};
 use tressfx_core::glam::Vec3;
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Counters, Fill, HairRenderer, PpllDesc, RenderDesc, ShadedStrands, ShortCutDesc, StrandInfo, Technique,
+    Counters, Fill, HairRenderer, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc, StrandInfo,
+    Technique, TilesDesc,
 };
 use tressfx_sim::{HairSim, SectionDesc, SimParams};
 
@@ -93,6 +95,32 @@ fn a_renderer_its_size_and_its_sections() {
     let (section, failures) =
         backend.fail_everywhere(|backend| ShadedStrands::new(backend, &mut PassList::new(), buffers, info.clone()));
     assert!(failures > 1, "{failures} creations");
+    let tiles = RenderDesc::new([64, 48], Format::Rgba16F).technique(TilesDesc::default());
+    let mut tiles = HairRenderer::new(&mut backend, &tiles).unwrap();
+    let camera = Camera { depth: DepthOrder::Standard, ..Camera::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 48]) };
+    let (view, material) = (camera.view([64, 48]).unwrap(), Material::default());
+    let draws = [SectionDraw::new(&section, &material, Pose::IDENTITY)];
+    let ((), failures) = backend.fail_everywhere(|backend| tiles.grow_to_predicted(backend, &view, &draws));
+    assert_eq!(failures, 2, "points and paints; the references have room");
+    let (_, failures) = backend.fail_everywhere(|backend| tiles.grow_to_measured(backend, &many));
+    assert_eq!(failures, 0, "they have room");
+    let (_, failures) = backend.fail_everywhere(|backend| tiles.grow_to_measured(backend, &too_many));
+    assert_eq!(failures, 1, "more references");
+    // Memory is given back, and a smaller buffer has to be made for that.
+    for renderer in [&mut renderer, &mut tiles] {
+        let before = renderer.technique_bytes();
+        let mut refused = 0;
+        for frame in 0..500 {
+            renderer.draw(&mut PassList::new(), &[], &[]).unwrap();
+            let mut measure = |backend: &mut dyn Backend| renderer.grow_to_measured(backend, &Counters::default());
+            match frame {
+                0..250 => refused += backend.fail_everywhere(measure).1,
+                _ => drop(measure(&mut backend).unwrap()),
+            }
+        }
+        assert!(refused > 0 && renderer.technique_bytes() < before, "{refused} refused");
+    }
+    tiles.destroy(&mut backend);
     section.destroy(&mut backend);
     renderer.destroy(&mut backend);
     buffers.destroy(&mut backend);

@@ -113,7 +113,7 @@ fn a_groom_that_leaves_and_comes_back_is_whole() {
         screen.renderer.grow_to_measured(&mut *screen.backend, &expected.counters).unwrap();
         let expected = screen.hair(&[&groom]);
         assert!(screen.renderer.technique_bytes() > before);
-        for _ in 0..240 {
+        for _ in 0..400 {
             screen.renderer.draw(&mut PassList::new(), &[], &[]).unwrap();
             screen.renderer.grow_to_measured(&mut *screen.backend, &Counters::default()).unwrap();
         }

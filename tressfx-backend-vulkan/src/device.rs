@@ -206,6 +206,7 @@ impl Gpu {
             .min(limits.max_per_stage_resources);
         let mut caps = Caps::webgpu_default();
         caps.adapter = describe(&self.properties);
+        caps.is_cpu = self.properties.device_type == vk::PhysicalDeviceType::CPU;
         caps.fragment_writes = self.enabled.fragment_writes;
         caps.r11g11b10_targets = self.draws_to(vk::Format::B10G11R11_UFLOAT_PACK32);
         // Some devices say a million, which no set of ours is ever to be tried with.

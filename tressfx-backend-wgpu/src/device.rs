@@ -92,7 +92,9 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     let limits = device.limits();
     let features = device.features();
     let mut caps = Caps::webgpu_default();
-    caps.adapter = describe(&device.adapter_info());
+    let info = device.adapter_info();
+    caps.adapter = describe(&info);
+    caps.is_cpu = info.device_type == DeviceType::Cpu;
     caps.compute = limits.max_compute_workgroups_per_dimension >= Grid::MAX_GROUPS;
     caps.fragment_writes = writes_in_fragments(device);
     caps.r11g11b10_targets = features.contains(Features::RG11B10UFLOAT_RENDERABLE);

@@ -43,6 +43,11 @@ impl<T: NoUninit> UniformArray<T> {
         self.buffer.range(index as u64 * self.stride, Self::BYTES)
     }
 
+    /// Frees the buffer.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        backend.destroy(self.buffer.into());
+    }
+
     /// Uploads structs to the places from `first` on.
     pub fn upload(&self, list: &mut PassList, first: usize, structs: &[T]) {
         let stride = self.stride as usize;

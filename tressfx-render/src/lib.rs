@@ -30,6 +30,7 @@
 
 #![forbid(unsafe_code)]
 
+mod auto;
 mod bound;
 mod composite;
 mod counters;
@@ -52,6 +53,7 @@ mod usage;
 mod views;
 mod visibility;
 
+pub use auto::AutoDesc;
 pub use counters::Counters;
 pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
 pub use material::{Highlight, Material, MaterialError};

@@ -36,6 +36,10 @@ pub use tail::Tail;
 
 const LABEL: Label = "hair.render.ppll";
 
+/// Lists that were bounded hold all fragments again where there may be room for so many times as many: a third walk less is worth more
+/// than the full headroom of a pool.
+const SPARE: f64 = 1.1;
+
 /// What the kernels of this technique import.
 const LIBRARY: &[Module] = &with_shared::<5, 18>([
     PIXELS,
@@ -206,7 +210,7 @@ impl Ppll {
             return Ok(());
         }
         let was_bounded = self.bounded.is_on();
-        self.reserve(backend, counters.wanted.into())?;
+        self.reserve(backend, counters.wanted.into(), &[])?;
         self.unproven = None;
         if was_bounded && counters.wanted > self.pool.largest {
             let fits = self.pool.largest / counters.pixels_with_hair.max(1);
@@ -215,25 +219,27 @@ impl Ppll {
         Ok(())
     }
 
-    /// Holds all fragments again where they have room.
-    fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
-        let nodes = with_headroom(fragments);
-        if self.desc.cap.is_some() || !self.bounded.is_on() || nodes > u64::from(self.pool.largest) {
-            return Ok(());
+    /// Holds all fragments again where they have room. Returns whether it does.
+    fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<bool> {
+        let has_room = fragments as f64 * SPARE <= f64::from(self.pool.largest);
+        if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
+            return Ok(false);
         }
         let kernel = self.resolve.prepare(backend, self.desc.variant(false))?;
-        if let Some(nodes) = self.pool.prepare(backend, nodes)? {
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments))? {
             self.pool.replace(backend, nodes);
         }
         self.resolve.change(self.desc.variant(false), kernel);
         self.bounded.turn_off(backend);
         self.forget_bindings();
-        Ok(())
+        Ok(true)
     }
 
     /// Gives back what was not needed for a long time.
     fn shrink(&mut self, backend: &mut dyn Backend, [fragments, nodes, pixels]: [u64; 3]) -> Result<()> {
-        self.unbound(backend, fragments)?;
+        if self.unbound(backend, fragments)? {
+            return Ok(());
+        }
         let needed = if self.bounded.is_on() { nodes } else { fragments };
         if let Some(nodes) = self.pool.prepare_smaller(backend, needed)? {
             self.pool.replace(backend, nodes);
@@ -243,6 +249,27 @@ impl Ppll {
         if self.bounded.is_on() && fits > u64::from(self.kept) {
             self.kept = fits.min(u64::from(self.bounded.asked())) as u32;
         }
+        Ok(())
+    }
+
+    /// Fragments that there may be room for.
+    pub(crate) fn largest(&self) -> u32 {
+        self.pool.largest
+    }
+
+    /// Gives back all that was reserved.
+    pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        let variant = self.desc.variant(self.desc.cap.is_some());
+        let kernel = self.resolve.prepare(backend, variant)?;
+        if let Some(nodes) = self.pool.prepare_smaller(backend, 0)? {
+            self.pool.replace(backend, nodes);
+        }
+        self.resolve.change(variant, kernel);
+        if self.desc.cap.is_none() {
+            self.bounded.turn_off(backend);
+        }
+        (self.unproven, self.usage) = (None, Usage::new());
+        self.forget_bindings();
         Ok(())
     }
 
@@ -280,7 +307,7 @@ impl TechniqueInstance for Ppll {
         predict::fragments(view, draws)
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
+    fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64, _: &[SectionDraw]) -> Result<()> {
         let desc = self.desc;
         let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
         let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
@@ -299,22 +326,22 @@ impl TechniqueInstance for Ppll {
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
-        self.grow(backend, counters)?;
-        let has_more_room = (self.pool.capacity, self.bounded.is_on(), self.kept) != before;
         let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
         let settled = self.usage.measured(needed);
-        if let Some((views, most)) = self.unproven.take() {
-            let most = most.max(counters.fragments.into());
-            if views > 1 {
-                self.unproven = Some((views - 1, most));
-            } else {
-                self.unbound(backend, most)?;
+        self.grow(backend, counters)?;
+        if (self.pool.capacity, self.bounded.is_on(), self.kept) != before {
+            return Ok(true);
+        }
+        // Each of these replaces something once all is made that it needs, so only one of them comes at a time.
+        match (self.unproven.take(), settled) {
+            (Some((views, most)), _) if views > 1 => {
+                self.unproven = Some((views - 1, most.max(counters.fragments.into())));
             }
+            (Some((_, most)), _) => self.unbound(backend, most.max(counters.fragments.into())).map(drop)?,
+            (None, Some(most)) => self.shrink(backend, most)?,
+            (None, None) => (),
         }
-        if let Some(most) = settled {
-            self.shrink(backend, most)?;
-        }
-        Ok(has_more_room)
+        Ok(false)
     }
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {

@@ -140,6 +140,11 @@ impl HairRenderer {
         self.order.bytes()
     }
 
+    /// Whether tiles draw the next frame: [`Technique::Auto`] may choose them, and lists again.
+    pub fn uses_tiles(&self) -> bool {
+        self.order.uses_tiles()
+    }
+
     /// How many fragments the pool can hold at present, or references where the technique has tiles; all that can be counted
     /// where it has none.
     pub fn capacity(&self) -> u32 {
@@ -168,10 +173,7 @@ impl HairRenderer {
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
         let wanted = self.order.predicted(view, &draws) as u64;
-        self.owner.change(backend, |backend| {
-            self.order.reserve_vertices(backend, &draws)?;
-            self.order.reserve(backend, wanted)
-        })
+        self.owner.change(backend, |backend| self.order.reserve(backend, wanted, &draws))
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`
@@ -366,9 +368,9 @@ mod tests {
         }
         let mut backend = NullBackend::default();
         let mut pool = Ppll::new(&mut backend, &PpllDesc::default(), [96, 64], Format::Rgba16F).unwrap();
-        pool.reserve(&mut backend, 100_000).unwrap();
+        pool.reserve(&mut backend, 100_000, &[]).unwrap();
         pool.resize(&mut backend, [33, 20]).unwrap();
-        pool.reserve(&mut backend, 50_000).unwrap();
+        pool.reserve(&mut backend, 50_000, &[]).unwrap();
         assert_eq!(pool.bytes(), backend.memory().bytes);
     }
 }

@@ -21,6 +21,7 @@ use tressfx_core::shader::Specialization;
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::counters::Counters;
 use crate::renderer::Targets;
 use crate::resolved::{check_pixels, pixels};
 use crate::segments::{Fill, Segments};
@@ -132,8 +133,12 @@ impl TechniqueInstance for ShortCut {
         0.0
     }
 
-    fn reserve(&mut self, _: &mut dyn Backend, _: u64) -> Result<()> {
+    fn reserve(&mut self, _: &mut dyn Backend, _: u64, _: &[SectionDraw]) -> Result<()> {
         Ok(())
+    }
+
+    fn measured(&mut self, _: &mut dyn Backend, _: &Counters) -> Result<bool> {
+        Ok(false)
     }
 
     fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {

@@ -9,6 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
+use crate::auto::{Auto, AutoDesc};
 use crate::counters::Counters;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
@@ -27,6 +28,8 @@ pub enum Technique {
     ShortCut(ShortCutDesc),
     /// All fragments of each pixel in order, in tiles, until nothing more is seen.
     Tiles(TilesDesc),
+    /// Lists or tiles, by what was measured in the frames before.
+    Auto(AutoDesc),
 }
 
 impl Default for Technique {
@@ -45,25 +48,20 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
 
-    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit.
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()>;
+    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit, and
+    /// makes room for the vertices of sections, where the technique keeps any.
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64, draws: &[SectionDraw]) -> Result<()>;
 
     /// Makes room for what a view has needed. Returns whether there is another room than before.
-    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        let before = self.capacity();
-        if counters.wanted > before {
-            self.reserve(backend, counters.wanted.into())?;
-        }
-        Ok(self.capacity() > before)
-    }
-
-    /// Makes room for the vertices of sections, where the technique keeps any.
-    fn reserve_vertices(&mut self, _: &mut dyn Backend, _: &[SectionDraw]) -> Result<()> {
-        Ok(())
-    }
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool>;
 
     /// Changes what can be changed from frame to frame.
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()>;
+
+    /// Whether tiles draw the next frame.
+    fn uses_tiles(&self) -> bool {
+        false
+    }
 
     /// How much the pool can hold; all that can be counted where there is none.
     fn capacity(&self) -> u32;
@@ -110,6 +108,7 @@ impl Technique {
         match self {
             Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
             Self::Tiles(desc) => Ok(Box::new(Tiles::new(backend, desc, size, target)?)),
+            Self::Auto(desc) => Ok(Box::new(Auto::new(backend, desc, size, target)?)),
             Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, target)?)),
         }
     }

@@ -30,6 +30,7 @@ use memory::Memory;
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
+pub(crate) use layout::vertices;
 
 /// Exact order in tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +96,34 @@ impl Tiles {
         })
     }
 
+    /// Makes room for so many references and some more, and for vertices.
+    pub(crate) fn reserve_counts(&mut self, backend: &mut dyn Backend, references: u64, vertices: u64) -> Result<()> {
+        self.usage.expect([references, vertices]);
+        let grown = self.memory.grow(backend, with_headroom(references), vertices);
+        self.forget_bindings();
+        grown
+    }
+
+    /// Gives back all that was reserved.
+    pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        self.usage = Usage::new();
+        let released = self.memory.shrink(backend, 0, 0);
+        self.forget_bindings();
+        released
+    }
+
+    /// Memory for views of another size, with room for nothing yet.
+    pub(crate) fn memory(backend: &mut dyn Backend, desc: &TilesDesc, size: [u32; 2]) -> Result<Memory> {
+        check(backend, size)?;
+        Memory::new(backend, size, desc)
+    }
+
+    /// Uses other memory.
+    pub(crate) fn replace_memory(&mut self, backend: &mut dyn Backend, memory: Memory) {
+        std::mem::replace(&mut self.memory, memory).destroy(backend);
+        self.forget_bindings();
+    }
+
     fn forget_bindings(&mut self) {
         self.kernels.forget_bindings();
         self.composite.bound.clear();
@@ -119,31 +148,24 @@ impl TechniqueInstance for Tiles {
         predict::references(view, draws).min(self.memory.largest_round())
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, references: u64) -> Result<()> {
-        self.usage.expect([references, 0]);
-        let grown = self.memory.grow_references(backend, with_headroom(references));
-        self.forget_bindings();
-        grown
+    fn reserve(&mut self, backend: &mut dyn Backend, references: u64, draws: &[SectionDraw]) -> Result<()> {
+        self.reserve_counts(backend, references, layout::vertices(draws))
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = self.capacity();
         if counters.wanted > before {
-            self.reserve(backend, counters.wanted.into())?;
+            self.reserve(backend, counters.wanted.into(), &[])?;
         }
-        let has_more_room = self.capacity() > before;
-        if let Some([references, vertices]) = self.usage.measured([counters.wanted.into(), 0]) {
+        let settled = self.usage.measured([counters.wanted.into(), 0]);
+        if self.capacity() > before {
+            return Ok(true);
+        }
+        if let Some([references, vertices]) = settled {
             self.memory.shrink(backend, references, vertices)?;
             self.forget_bindings();
         }
-        Ok(has_more_room)
-    }
-
-    fn reserve_vertices(&mut self, backend: &mut dyn Backend, draws: &[SectionDraw]) -> Result<()> {
-        self.usage.expect([0, layout::vertices(draws)]);
-        let grown = self.memory.grow_vertices(backend, layout::vertices(draws));
-        self.forget_bindings();
-        grown
+        Ok(false)
     }
 
     fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
@@ -153,6 +175,10 @@ impl TechniqueInstance for Tiles {
         }
         self.desc = *desc;
         Ok(())
+    }
+
+    fn uses_tiles(&self) -> bool {
+        true
     }
 
     fn capacity(&self) -> u32 {

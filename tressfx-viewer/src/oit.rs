@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
+use tressfx_render::{AutoDesc, Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -14,13 +14,13 @@ pub(crate) struct Oit {
     /// The nearest fragments of a pixel that are sorted; without it, the default of the technique
     #[arg(long, value_name = "K")]
     oit_k: Option<u32>,
-    /// With `--oit ppll`: what is seen of the fragments behind the K nearest; `shaded` by default
+    /// With `--oit ppll` or `auto`: what is seen of the fragments behind the K nearest; `shaded` by default
     #[arg(long, value_enum)]
     oit_tail: Option<TailName>,
-    /// With `--oit ppll`: fragments of a pixel that take memory, the nearest; the others are merged. Without it, all
+    /// With `--oit ppll` or `auto`: fragments of a pixel that take memory, the nearest; the others are merged. Without it, all
     #[arg(long, value_name = "N")]
     oit_cap: Option<u32>,
-    /// With `--oit ppll`: bytes that the lists may take, 16 a fragment. Without it, 256 MiB
+    /// With `--oit ppll` or `auto`: bytes that the lists may take, 16 a fragment. Without it, 256 MiB
     #[arg(long, value_name = "BYTES")]
     oit_bytes: Option<u64>,
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
@@ -76,14 +76,11 @@ enum OitName {
     Shortcut,
     /// All fragments of each pixel in order, until nothing more is seen
     Tiles,
+    /// `ppll`, and `tiles` where hair is dense, by what was measured; on a CPU always `ppll`
+    Auto,
 }
 
 impl Oit {
-    /// Whether it is tiles.
-    pub(crate) fn is_tiles(&self) -> bool {
-        self.oit == OitName::Tiles
-    }
-
     /// The technique that was asked for.
     pub(crate) fn technique(&self) -> Result<Technique> {
         if self.oit_ordered && self.oit != OitName::Shortcut {
@@ -92,17 +89,13 @@ impl Oit {
         let of_lists =
             [("tail", self.oit_tail.is_some()), ("cap", self.oit_cap.is_some()), ("bytes", self.oit_bytes.is_some())];
         for (name, is_given) in of_lists {
-            if is_given && self.oit != OitName::Ppll {
-                bail!("--oit-{name} belongs to --oit ppll");
+            if is_given && !self.has_lists() {
+                bail!("--oit-{name} belongs to --oit ppll and --oit auto");
             }
         }
         match self.oit {
-            OitName::Ppll => {
-                let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
-                let desc = PpllDesc::default().tail(tail).cap(self.oit_cap);
-                let desc = desc.max_node_bytes(self.oit_bytes.unwrap_or(desc.max_node_bytes));
-                Ok(desc.k(self.k(desc.k, &K_RANGE)?).fill(self.fill.fill()).into())
-            }
+            OitName::Ppll => Ok(self.lists()?.into()),
+            OitName::Auto => Ok(AutoDesc::default().lists(self.lists()?).into()),
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
@@ -111,6 +104,17 @@ impl Oit {
             OitName::Tiles if self.oit_k.is_some() => bail!("--oit-k belongs to --oit ppll and --oit shortcut"),
             OitName::Tiles => Ok(TilesDesc::default().into()),
         }
+    }
+
+    fn has_lists(&self) -> bool {
+        matches!(self.oit, OitName::Ppll | OitName::Auto)
+    }
+
+    fn lists(&self) -> Result<PpllDesc> {
+        let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
+        let desc = PpllDesc::default().tail(tail).cap(self.oit_cap).fill(self.fill.fill());
+        let bytes = self.oit_bytes.unwrap_or(desc.max_node_bytes);
+        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?))
     }
 
     fn k(&self, default: u32, range: &RangeInclusive<u32>) -> Result<u32> {

@@ -42,7 +42,7 @@ fn check_whole(args: &Render, drawn: &RenderStats) -> Result<()> {
     if args.reference {
         return Ok(());
     }
-    let what = if args.oit.is_tiles() { "references of tiles to segments" } else { "fragments" };
+    let what = if drawn.technique == "tiles" { "references of tiles to segments" } else { "fragments" };
     let missing = format!("{} {what} found no room: hair is missing in the picture", drawn.dropped);
     let merged = format!("{} fragments found no room and were merged: hair is there, its order is not", drawn.merged);
     let losses = [(drawn.dropped, missing), (drawn.merged, merged)];

@@ -51,6 +51,8 @@ pub(crate) struct SimStats {
 /// What the last frame drew.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct RenderStats {
+    /// What drew it: `ppll`, `shortcut` or `tiles`.
+    pub(crate) technique: &'static str,
     /// That hair made, dropped ones too.
     pub(crate) fragments: u64,
     /// What found no room: fragments, or references of tiles to segments.

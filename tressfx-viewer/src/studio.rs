@@ -6,7 +6,8 @@ use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, Technique,
+    ViewDraw,
 };
 use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
@@ -82,7 +83,13 @@ impl Studio {
     /// frame would now find more room.
     pub(crate) fn take_stock(&mut self, run: &mut Run, counters: Ticket) -> Result<bool> {
         let counters = Counters::from_bytes(&run.fetch(counters)?);
+        let technique = match self.renderer.desc().technique {
+            _ if self.renderer.uses_tiles() => "tiles",
+            Technique::ShortCut(_) => "shortcut",
+            _ => "ppll",
+        };
         self.drawn = RenderStats {
+            technique,
             fragments: u64::from(counters.fragments),
             dropped: u64::from(counters.dropped),
             merged: u64::from(counters.merged),

@@ -97,6 +97,7 @@ fn bad_words_are_refused_by_name() {
     assert!(words(&["--oit-k", "33"]).0.contains("--oit-k 33: it must be from 0 to 32"));
     assert!(words(&["--oit", "shortcut", "--oit-k", "9"]).0.contains("--oit-k 9: it must be from 1 to 8"));
     assert!(words(&["--oit", "tiles", "--oit-tail", "none"]).0.contains("--oit-tail belongs to --oit ppll"));
+    assert!(words(&["--oit", "auto", "--oit-k", "33"]).0.contains("--oit-k 33: it must be from 0 to 32"));
     assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
     assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));

@@ -84,7 +84,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     }
     assert_eq!(labels, labels_of_kernels());
     let both = |name| [format!("{name} false"), format!("{name} true")];
-    let names = ["follows", "global_shape", "ordered", "pinned_tips", "roots"];
+    let names = ["bounded", "follows", "global_shape", "ordered", "pinned_tips", "roots", "shaded", "unshaded"];
     assert_eq!(features, names.into_iter().flat_map(both).collect());
 }
 

@@ -9,6 +9,8 @@ use crate::format::Format;
 pub struct Caps {
     /// The adapter, for people to read.
     pub adapter: String,
+    /// Whether it computes on the CPU: a software renderer.
+    pub is_cpu: bool,
     /// Whether it runs compute passes.
     pub compute: bool,
     /// Whether it runs raster passes.
@@ -50,6 +52,7 @@ impl Caps {
     pub fn webgpu_default() -> Self {
         Self {
             adapter: String::from("WebGPU default limits"),
+            is_cpu: false,
             compute: true,
             raster: true,
             read_back: true,

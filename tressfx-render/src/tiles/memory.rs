@@ -184,11 +184,16 @@ impl Memory {
         Ok(())
     }
 
-    /// Makes room for `wanted` references, and for more than are allowed in rounds.
-    pub(crate) fn grow_references(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
+    /// Makes room for `wanted` references, for more than are allowed in rounds, and for `vertices`.
+    pub(crate) fn grow(&mut self, backend: &mut dyn Backend, wanted: u64, vertices: u64) -> Result<()> {
         let count = wanted.min(u64::from(self.most_references)) as u32;
-        if count > self.references.count {
-            let grown = References::new(backend, count)?;
+        let more = |count| References::new(backend, count);
+        let references = (count > self.references.count).then_some(count).map(more).transpose()?;
+        if vertices > self.vertices.count {
+            let vertices = Vertices::new(backend, vertices)?;
+            self.replace_vertices(backend, vertices);
+        }
+        if let Some(grown) = references {
             let old = std::mem::replace(&mut self.references, grown);
             self.references.rounds = old.rounds;
             backend.destroy(old.buffer.into());
@@ -200,14 +205,9 @@ impl Memory {
         Ok(())
     }
 
-    /// Makes room for `wanted` vertices.
-    pub(crate) fn grow_vertices(&mut self, backend: &mut dyn Backend, wanted: u64) -> Result<()> {
-        if wanted > self.vertices.count {
-            let grown = Vertices::new(backend, wanted)?;
-            let old = std::mem::replace(&mut self.vertices, grown);
-            [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
-        }
-        Ok(())
+    fn replace_vertices(&mut self, backend: &mut dyn Backend, vertices: Vertices) {
+        let old = std::mem::replace(&mut self.vertices, vertices);
+        [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 
     /// Gives back what is much more than is needed.
@@ -218,8 +218,7 @@ impl Memory {
         let smaller = if shrinks { Some(References::new(backend, count)?) } else { None };
         if is_surplus(self.vertices.count, vertices) {
             let smaller = Vertices::new(backend, vertices)?;
-            let old = std::mem::replace(&mut self.vertices, smaller);
-            [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+            self.replace_vertices(backend, smaller);
         }
         if let Some(smaller) = smaller {
             backend.destroy(std::mem::replace(&mut self.references, smaller).buffer.into());
@@ -236,6 +235,16 @@ impl Memory {
         let tiles = [bins, depths, depths, depths, queue].map(|bytes| bytes.max(16));
         let rest = Resolved::bytes(self.screen.size) + GROUPS_BYTES + ViewCounters::BYTES + self.uniforms.bytes();
         tiles.iter().chain(&vertices).sum::<u64>() + references + rest
+    }
+
+    pub(crate) fn destroy(self, backend: &mut dyn Backend) {
+        self.screen.destroy(backend);
+        self.counters.destroy(backend);
+        self.uniforms.destroy(backend);
+        let Vertices { points, paints, .. } = self.vertices;
+        [points, paints, self.references.buffer, self.groups]
+            .into_iter()
+            .for_each(|buffer| backend.destroy(buffer.into()));
     }
 
     /// What the kernels of a view are given: for counting, or for a round.

@@ -1,0 +1,123 @@
+//! The technique that chooses between lists and tiles.
+
+mod support;
+
+use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
+use tressfx_render::{AutoDesc, Counters, Material, PpllDesc, Technique, TilesDesc};
+
+use support::screen;
+
+fn material() -> Material {
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+    })
+}
+
+/// Tiles from eight fragments a pixel on, on every device.
+fn auto() -> AutoDesc {
+    AutoDesc::default().dense(8.0).tiles_on_cpu(true)
+}
+
+fn with(technique: impl Into<Technique>) -> impl FnOnce(&mut Setup) {
+    let technique = technique.into();
+    move |setup| setup.technique = technique
+}
+
+/// A frame whose counters are looked at.
+fn frame(screen: &mut Screen, groom: &Groom) -> Picture {
+    let picture = screen.hair(&[groom]);
+    screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+    picture
+}
+
+#[test]
+fn it_changes_when_hair_grows_dense_and_back_and_draws_what_the_chosen_one_draws() {
+    let (sparse, dense) = (Groom::wavy(60, 12, 1, material()), Groom::wavy(1500, 16, 3, material()));
+    let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
+    let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
+    let of_lists = [&sparse, &dense].map(|groom| lists.hair(&[groom]));
+    let of_tiles = [&sparse, &dense].map(|groom| tiles.hair(&[groom]));
+    assert!(of_lists[1].bytes != of_tiles[1].bytes, "they differ, or this test shows nothing");
+    let Some(mut screen) = screen(with(auto())) else { return };
+    let mut used = Vec::new();
+    for (groom, frames) in [(0, 40), (1, 60), (0, 60), (1, 60)] {
+        for _ in 0..frames {
+            let uses_tiles = screen.renderer.uses_tiles();
+            let picture = frame(&mut screen, [&sparse, &dense][groom]);
+            let expected = if uses_tiles { &of_tiles[groom] } else { &of_lists[groom] };
+            assert!(picture.bytes == expected.bytes, "tiles {uses_tiles}: {:?}", picture.counters);
+            assert_eq!(picture.counters.dropped, 0, "nothing is dropped when the technique changes");
+            if used.last() != Some(&uses_tiles) {
+                used.push(uses_tiles);
+            }
+        }
+    }
+    assert_eq!(used, [false, true, false, true]);
+}
+
+#[test]
+fn the_technique_that_is_not_used_gives_its_memory_back() {
+    let dense = Groom::wavy(1500, 16, 3, material());
+    let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
+    tiles.hair(&[&dense]);
+    let Some(lists) = screen(with(PpllDesc::default())) else { return };
+    let Some(mut screen) = screen(with(auto())) else { return };
+    let empty = screen.renderer.technique_bytes();
+    assert_eq!(empty, lists.renderer.technique_bytes(), "tiles are made when they are first needed");
+    frame(&mut screen, &dense);
+    let of_lists = screen.renderer.technique_bytes();
+    assert!(of_lists > empty + 1_000_000);
+    (0..40).for_each(|_| drop(frame(&mut screen, &dense)));
+    assert!(screen.renderer.uses_tiles());
+    assert_eq!(screen.renderer.technique_bytes(), empty + tiles.renderer.technique_bytes());
+    screen.renderer.resize(&mut *screen.backend, [96, 64]).unwrap();
+    assert!(!screen.renderer.uses_tiles(), "after a new size it begins with lists");
+    (0..40).for_each(|_| drop(frame(&mut screen, &dense)));
+    assert!(screen.renderer.uses_tiles());
+}
+
+#[test]
+fn a_density_that_flickers_changes_nothing() {
+    let (sparse, dense) = (Groom::wavy(60, 12, 1, material()), Groom::wavy(400, 16, 3, material()));
+    let Some(mut screen) = screen(with(auto())) else { return };
+    for i in 0..120 {
+        frame(&mut screen, if i % 20 < 15 { &dense } else { &sparse });
+        assert!(!screen.renderer.uses_tiles());
+    }
+}
+
+#[test]
+fn more_fragments_than_lists_may_hold_are_for_tiles() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let few = PpllDesc::default().max_node_bytes(16 * 20_000);
+    let Some(mut screen) = screen(with(auto().dense(1e6).lists(few))) else { return };
+    let counters: Vec<Counters> = (0..40).map(|_| frame(&mut screen, &groom).counters).collect();
+    assert!(screen.renderer.uses_tiles());
+    assert!(counters.iter().all(|counters| counters.dropped == 0));
+}
+
+#[test]
+fn a_cpu_stays_with_lists() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let Some(mut screen) = screen(with(auto().tiles_on_cpu(false))) else { return };
+    let is_cpu = screen.backend.caps().is_cpu;
+    (0..40).for_each(|_| drop(frame(&mut screen, &groom)));
+    assert_eq!(screen.renderer.uses_tiles(), !is_cpu, "{}", screen.backend.caps().adapter);
+}
+
+#[test]
+fn its_settings_change_between_frames() {
+    let groom = Groom::wavy(400, 16, 3, material());
+    let Some(mut screen) = screen(with(AutoDesc::default())) else { return };
+    let three = PpllDesc::default().k(3);
+    screen.renderer.retune(&mut *screen.backend, AutoDesc::default().lists(three)).unwrap();
+    let Some(mut lists) = support::screen(with(three)) else { return };
+    assert!(screen.hair(&[&groom]).bytes == lists.hair(&[&groom]).bytes);
+    let refused =
+        [Technique::from(three), AutoDesc::default().tiles(TilesDesc::default().max_reference_bytes(4)).into()];
+    for technique in refused {
+        assert!(screen.renderer.retune(&mut *screen.backend, technique).is_err());
+    }
+}

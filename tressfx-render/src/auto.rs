@@ -1,0 +1,277 @@
+//! The technique by what was measured: lists while there is room for all fragments and hair is not dense, tiles where it is.
+//!
+//! Lists are the faster ones, and blend what lies behind the nearest fragments as a mean; tiles keep the exact order in memory that
+//! does not grow with the density of hair. On a CPU tiles take several times as long, so that it stays with lists, which are
+//! bounded where there is no room for all. After a new size it begins with lists.
+
+use tressfx_core::backend::{Backend, Format};
+use tressfx_core::error::Result;
+use tressfx_core::id::BufferId;
+use tressfx_core::pass::PassList;
+use tressfx_core::view::View;
+
+use crate::counters::Counters;
+use crate::ppll::{Ppll, PpllDesc};
+use crate::predict;
+use crate::renderer::Targets;
+use crate::strands::SectionDraw;
+use crate::technique::{Technique, TechniqueInstance, another_technique};
+use crate::tiles::{Tiles, TilesDesc};
+use crate::views::BoundView;
+
+/// Measurements in a row that must speak for the other technique before it takes over.
+const VOTES: u32 = 30;
+
+/// Frames after the technique has changed for which counters are not looked at: they may still be those of the other one.
+const LATENCY: u64 = 8;
+
+/// Frames after which is predicted again what the other technique would need.
+const FRAMES: u64 = 16;
+
+/// Lists come back where hair has less than this share of what tiles take over at.
+const BACK: f64 = 0.7;
+
+/// Lists or tiles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AutoDesc {
+    /// The lists.
+    pub lists: PpllDesc,
+    /// The tiles.
+    pub tiles: TilesDesc,
+    /// Fragments a pixel with hair, in the mean of a view, from which on hair is drawn in tiles. They also draw it where there are more
+    /// fragments than lists may hold.
+    pub dense: f32,
+    /// Whether tiles may take over on a device that computes on the CPU too.
+    pub tiles_on_cpu: bool,
+}
+
+impl AutoDesc {
+    /// The same with other lists.
+    #[must_use]
+    pub fn lists(self, lists: PpllDesc) -> Self {
+        Self { lists, ..self }
+    }
+
+    /// The same with other tiles.
+    #[must_use]
+    pub fn tiles(self, tiles: TilesDesc) -> Self {
+        Self { tiles, ..self }
+    }
+
+    /// The same with tiles from another density on.
+    #[must_use]
+    pub fn dense(self, dense: f32) -> Self {
+        Self { dense, ..self }
+    }
+
+    /// The same with or without tiles on a CPU.
+    #[must_use]
+    pub fn tiles_on_cpu(self, tiles_on_cpu: bool) -> Self {
+        Self { tiles_on_cpu, ..self }
+    }
+}
+
+impl Default for AutoDesc {
+    /// Tiles from 200 fragments a pixel on, and not on a CPU.
+    fn default() -> Self {
+        Self { lists: PpllDesc::default(), tiles: TilesDesc::default(), dense: 200.0, tiles_on_cpu: false }
+    }
+}
+
+impl From<AutoDesc> for Technique {
+    fn from(desc: AutoDesc) -> Self {
+        Self::Auto(desc)
+    }
+}
+
+/// What a frame is predicted to need, by either technique.
+#[derive(Clone, Copy, Debug, Default)]
+struct Predicted {
+    fragments: f64,
+    references: f64,
+    vertices: u64,
+}
+
+/// Lists and tiles at work.
+#[derive(Debug)]
+pub(crate) struct Auto {
+    desc: AutoDesc,
+    size: [u32; 2],
+    target: Format,
+    lists: Ppll,
+    /// Made when they first take over, and kept.
+    tiles: Option<Tiles>,
+    uses_tiles: bool,
+    votes: u32,
+    frame: u64,
+    /// Counters count from this frame on.
+    settled_at: u64,
+    /// Whether the technique that is not in use still has its memory.
+    has_surplus: bool,
+    /// The largest of the views.
+    predicted: Predicted,
+    /// Fragments that lists have measured, of those that were predicted: a body hides the others.
+    seen: f64,
+}
+
+impl Auto {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &AutoDesc, size: [u32; 2], target: Format) -> Result<Self> {
+        Ok(Self {
+            desc: *desc,
+            size,
+            target,
+            lists: Ppll::new(backend, &desc.lists, size, target)?,
+            tiles: None,
+            uses_tiles: false,
+            votes: 0,
+            frame: 0,
+            settled_at: 0,
+            has_surplus: false,
+            predicted: Predicted::default(),
+            seen: 1.0,
+        })
+    }
+
+    fn active(&self) -> &dyn TechniqueInstance {
+        match &self.tiles {
+            Some(tiles) if self.uses_tiles => tiles,
+            _ => &self.lists,
+        }
+    }
+
+    fn active_mut(&mut self) -> &mut dyn TechniqueInstance {
+        match &mut self.tiles {
+            Some(tiles) if self.uses_tiles => tiles,
+            _ => &mut self.lists,
+        }
+    }
+
+    /// Whether a measurement speaks for the technique that is not in use.
+    fn speaks_for_other(&mut self, backend: &dyn Backend, counters: &Counters) -> bool {
+        if backend.caps().is_cpu && !self.desc.tiles_on_cpu {
+            return false;
+        }
+        if !self.uses_tiles && self.predicted.fragments > 0.0 {
+            self.seen = (f64::from(counters.fragments) / self.predicted.fragments).min(1.0);
+        }
+        // Tiles do not make what nobody sees: then it is known from the prediction alone how many fragments there are.
+        let fragments = if self.uses_tiles { self.predicted.fragments * self.seen } else { counters.fragments.into() };
+        let depth = fragments / f64::from(counters.pixels_with_hair.max(1));
+        let part = (depth / f64::from(self.desc.dense)).max(fragments / f64::from(self.lists.largest()));
+        if self.uses_tiles { part < BACK } else { part > 1.0 }
+    }
+
+    /// Hands over, with room for what is predicted, so that nothing is dropped.
+    fn switch(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        let Predicted { fragments, references, vertices } = self.predicted;
+        if self.uses_tiles {
+            self.lists.reserve(backend, fragments as u64, &[])?;
+        } else if let Some(tiles) = &mut self.tiles {
+            tiles.reserve_counts(backend, references as u64, vertices)?;
+        } else {
+            let mut tiles = Tiles::new(backend, &self.desc.tiles, self.size, self.target)?;
+            tiles.reserve_counts(backend, references as u64, vertices)?;
+            self.tiles = Some(tiles);
+        }
+        self.uses_tiles = !self.uses_tiles;
+        (self.votes, self.has_surplus, self.settled_at) = (0, true, self.frame + LATENCY);
+        Ok(())
+    }
+
+    /// Frees what the technique that is not in use has kept for its last frames.
+    fn release_other(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        match &mut self.tiles {
+            Some(tiles) if !self.uses_tiles => tiles.release(backend),
+            Some(_) => self.lists.release(backend),
+            None => Ok(()),
+        }
+    }
+}
+
+impl TechniqueInstance for Auto {
+    fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
+        let memory = self.tiles.as_ref().map(|_| Tiles::memory(backend, &self.desc.tiles, size)).transpose()?;
+        self.lists.resize(backend, size)?;
+        if let (Some(tiles), Some(memory)) = (&mut self.tiles, memory) {
+            tiles.replace_memory(backend, memory);
+        }
+        (self.size, self.uses_tiles, self.votes, self.has_surplus) = (size, false, 0, false);
+        Ok(())
+    }
+
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
+        self.active().predicted(view, draws)
+    }
+
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64, draws: &[SectionDraw]) -> Result<()> {
+        self.active_mut().reserve(backend, wanted, draws)
+    }
+
+    fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
+        // Each step is a change of its own: what one has replaced stays if another fails.
+        if std::mem::take(&mut self.has_surplus) {
+            self.release_other(backend)?;
+            return Ok(false);
+        }
+        if self.frame < self.settled_at {
+            return Ok(false);
+        }
+        self.votes = if self.speaks_for_other(backend, counters) { self.votes + 1 } else { 0 };
+        if self.votes >= VOTES && self.predicted.vertices > 0 {
+            self.switch(backend)?;
+            return Ok(false);
+        }
+        self.active_mut().measured(backend, counters)
+    }
+
+    fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
+        let Technique::Auto(desc) = technique else { return Err(another_technique("hair.render.auto")) };
+        if desc.tiles.max_reference_bytes != self.desc.tiles.max_reference_bytes {
+            return Err(another_technique("hair.render.auto"));
+        }
+        self.lists.retune(backend, &desc.lists.into())?;
+        if let Some(tiles) = &mut self.tiles {
+            tiles.retune(backend, &desc.tiles.into())?;
+        }
+        self.desc = *desc;
+        Ok(())
+    }
+
+    fn uses_tiles(&self) -> bool {
+        self.uses_tiles
+    }
+
+    fn capacity(&self) -> u32 {
+        self.active().capacity()
+    }
+
+    fn bytes(&self) -> u64 {
+        self.lists.bytes() + self.tiles.as_ref().map_or(0, |tiles| tiles.bytes())
+    }
+
+    fn counters(&self, view: usize) -> (BufferId, u64) {
+        self.active().counters(view)
+    }
+
+    fn check(&self, draws: &[SectionDraw]) -> Result<()> {
+        self.active().check(draws)
+    }
+
+    fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
+        self.frame += 1;
+        if self.frame % FRAMES == 1 {
+            self.predicted = Predicted { vertices: crate::tiles::vertices(draws), ..Predicted::default() };
+        }
+        self.active_mut().begin(list, views, draws);
+    }
+
+    fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
+        if self.frame % FRAMES == 1 {
+            let Predicted { fragments, references, .. } = &mut self.predicted;
+            *fragments = fragments.max(predict::fragments(view.view, draws));
+            *references = references.max(predict::references(view.view, draws));
+        }
+        self.active_mut().draw(list, view, targets, draws)
+    }
+}
