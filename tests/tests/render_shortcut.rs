@@ -9,6 +9,7 @@ use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Counters, Material, ShortCutDesc, reference};
 
+use support::hair::is_sound;
 use support::screen;
 
 const VARIANTS: [(u32, bool); 6] = [(1, false), (3, false), (8, false), (1, true), (3, true), (8, true)];
@@ -32,10 +33,6 @@ fn in_f64(screen: &Screen, grooms: &[&Groom], k: u32, ordered: bool) -> Vec<DVec
     let far = screen.view.depth().far();
     let strands: Vec<_> = grooms.iter().map(|groom| groom.reference()).collect();
     reference::shortcut(&screen.view, &screen.lights, &strands, &|_| far, k as usize, ordered)
-}
-
-fn is_sound(picture: &Picture) -> bool {
-    picture.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0 && pixel.w <= 1.0)
 }
 
 #[test]

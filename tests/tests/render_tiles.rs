@@ -12,36 +12,10 @@ use tressfx_core::error::Label;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::view::Pose;
-use tressfx_render::{Counters, Material, SectionDraw, TilesDesc, ViewDraw, reference};
+use tressfx_render::{Counters, SectionDraw, TilesDesc, ViewDraw, reference};
 
+use support::hair::{endless, faint, material, tiles};
 use support::screen;
-
-/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-        m.variation = 1.0;
-    })
-}
-
-/// Hair through which hundreds of fragments of a pixel are seen.
-fn faint() -> Material {
-    material().with(|m| {
-        m.fibre_radius = Some(0.01);
-        (m.opacity, m.tip_opacity) = (0.03, 0.02);
-    })
-}
-
-fn tiles(setup: &mut Setup) {
-    setup.technique = TilesDesc::default().into();
-}
-
-/// Tiles that make every fragment, however little of it is seen.
-fn endless(setup: &mut Setup) {
-    setup.technique = TilesDesc::default().closed_below(0.0).into();
-}
 
 /// As near as half floats can come.
 fn rounded(exact: &[DVec4]) -> Vec<DVec4> {
@@ -284,6 +258,21 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
     eprintln!("{wanted} references to {} segments of tiles, of which {} leave fragments", nearest.len(), touched.len());
     assert!(touched.len() > 4000 && touched.iter().all(|pair| nearest.contains_key(pair)));
     assert!(nearest.len() < 2 * touched.len(), "what is referred to is near");
+}
+
+#[test]
+fn what_is_outside_of_the_picture_is_in_no_tile() {
+    let Some(mut screen) = screen(odd) else { return };
+    let inside = Groom::wavy(200, 12, 3, material());
+    assert!(screen.hair(&[&inside]).counters.wanted > 1000);
+    for offset in [[-6.0, 0.0], [6.0, 0.0], [0.0, -6.0], [0.0, 6.0], [-6.0, 6.0], [6.0, -6.0]] {
+        let mut outside = inside.clone();
+        for position in &mut outside.positions {
+            position[0] += offset[0];
+            position[1] += offset[1];
+        }
+        assert_eq!(screen.hair(&[&outside]).counters, Counters::default(), "{offset:?}");
+    }
 }
 
 #[test]

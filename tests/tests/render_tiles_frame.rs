@@ -5,39 +5,13 @@ mod support;
 use glam::Vec3;
 use glam::camera::rh;
 use tressfx_asset::mesh::Mesh;
-use tressfx_conformance::render::{Difference, Groom, Setup};
+use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
-use tressfx_render::{Counters, Material, TilesDesc, reference};
+use tressfx_render::{Counters, reference};
 
+use support::hair::{endless, faint, material, tiles};
 use support::screen;
-
-/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-        m.variation = 1.0;
-    })
-}
-
-/// Hair through which hundreds of fragments of a pixel are seen.
-fn faint() -> Material {
-    material().with(|m| {
-        m.fibre_radius = Some(0.01);
-        (m.opacity, m.tip_opacity) = (0.03, 0.02);
-    })
-}
-
-fn tiles(setup: &mut Setup) {
-    setup.technique = TilesDesc::default().into();
-}
-
-/// Tiles that make every fragment, however little of it is seen.
-fn endless(setup: &mut Setup) {
-    setup.technique = TilesDesc::default().closed_below(0.0).into();
-}
 
 #[test]
 fn sections_are_sorted_against_each_other() {

@@ -4,7 +4,7 @@ mod support;
 
 use glam::camera::rh;
 use glam::{Mat4, Vec3};
-use tressfx_conformance::render::{Groom, Picture, Random, Setup};
+use tressfx_conformance::render::{Groom, Random, Setup};
 use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
@@ -14,6 +14,7 @@ use tressfx_render::{
     Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, Targets, TilesDesc, ViewDraw,
 };
 
+use support::hair::{is_sound, tiles};
 use support::screen;
 
 fn material() -> Material {
@@ -22,14 +23,6 @@ fn material() -> Material {
         m.opacity = 0.7;
         m.tip_opacity = 0.5;
     })
-}
-
-fn tiles(setup: &mut Setup) {
-    setup.technique = TilesDesc::default().into();
-}
-
-fn is_sound(picture: &Picture) -> bool {
-    picture.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0 && pixel.w <= 1.0)
 }
 
 #[test]

@@ -13,11 +13,11 @@ pub(crate) struct Family {
 
 /// All families, in the order of the tables.
 pub(crate) const FAMILIES: [Family; 5] = [
-    Family { name: "ppll", words: &["--oit", "ppll"], ks: &[1, 2, 4, 8, 16], quick_ks: &[1, 4, 8, 16] },
+    Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
     Family {
         name: "ppll-raster",
         words: &["--oit", "ppll", "--fill", "raster"],
-        ks: &[1, 2, 4, 8, 16],
+        ks: &[0, 1, 2, 4, 8, 16, 32],
         quick_ks: &[8],
     },
     Family { name: "shortcut-mean", words: &["--oit", "shortcut"], ks: &[1, 2, 3, 4, 8], quick_ks: &[1, 3, 8] },
@@ -77,7 +77,7 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 21);
+        assert_eq!(methods(Extent::Full).len(), 25);
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
         assert_eq!(family_of("tiles"), Some((4, "")));
     }

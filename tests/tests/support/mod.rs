@@ -1,6 +1,8 @@
 //! The GPU that the tests of this folder run on.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+pub(crate) mod hair;
+
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_conformance::render::{Screen, Setup};
 use tressfx_conformance::sim::Rig;

@@ -1,0 +1,37 @@
+//! Hair and settings that several tests of tiles share.
+#![allow(dead_code, reason = "each test takes what it needs")]
+
+use tressfx_conformance::render::{Picture, Setup};
+use tressfx_render::{Material, TilesDesc};
+
+/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
+pub(crate) fn material() -> Material {
+    Material::default().with(|m| {
+        m.fibre_radius = Some(0.005);
+        m.opacity = 0.7;
+        m.tip_opacity = 0.5;
+        m.variation = 1.0;
+    })
+}
+
+/// Hair through which hundreds of fragments of a pixel are seen.
+pub(crate) fn faint() -> Material {
+    material().with(|m| {
+        m.fibre_radius = Some(0.01);
+        (m.opacity, m.tip_opacity) = (0.03, 0.02);
+    })
+}
+
+pub(crate) fn tiles(setup: &mut Setup) {
+    setup.technique = TilesDesc::default().into();
+}
+
+/// Tiles that make every fragment, however little of it is seen.
+pub(crate) fn endless(setup: &mut Setup) {
+    setup.technique = TilesDesc::default().closed_below(0.0).into();
+}
+
+/// Whether all pixels are colours and opacities.
+pub(crate) fn is_sound(picture: &Picture) -> bool {
+    picture.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0 && pixel.w <= 1.0)
+}
