@@ -15,7 +15,7 @@ struct Step {
     gravity: vec3<f32>,
     /// The longest displacement relative to the head.
     max_displacement: f32,
-    /// Displacement by the wind from the four corners of its cone, across an edge.
+    /// Displacement by the wind from the four corners of its cone, across an edge; for the solver `Direct` its velocity, units/s.
     wind: array<vec4<f32>, 4>,
     global_stiffness: f32,
     /// Share of the strand, from the root, that the global shape reaches.
@@ -45,7 +45,24 @@ struct Step {
     first_capsule: u32,
     /// The capsule after the last one.
     end_capsule: u32,
-    unused: u32,
+    /// Not 0: the past of a strand says nothing, since the sub-step before had another length.
+    first_order: u32,
+    /// Length of the sub-step, s.
+    length: f32,
+    /// Bending stiffness over the mass of unit length, units^4/s^2.
+    bending: f32,
+    /// Twist stiffness over bending stiffness.
+    twist_ratio: f32,
+    /// Time by which bending moments lag behind, s.
+    internal_damping: f32,
+    /// Rate at which still air stops hair that moves across itself, 1/s.
+    drag_across: f32,
+    /// The same along itself.
+    drag_along: f32,
+    /// Stiffness of the spring to the rest pose over mass, 1/s^2.
+    pull: f32,
+    /// The most rounds of Newton's method.
+    rounds: u32,
 }
 
 @group(0) @binding(0) var<uniform> step: Step;

@@ -13,6 +13,8 @@ use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::Pose;
 
 use crate::collider::{GpuCapsule, GpuCapsuleMotion};
+use crate::sim::SectionDesc;
+use crate::solver::Solver;
 use crate::step::Step;
 
 /// What the simulation of a section reads and writes. Everything but `strands` holds guides alone, vertex-major:
@@ -29,12 +31,25 @@ pub(crate) struct SectionBuffers {
     pub(crate) previous: BufferId,
     /// `vec4<f32>`, `follow * guides + guide`; only where there are follow strands.
     pub(crate) follow_offsets: Option<BufferId>,
+    /// Only where rods are solved for.
+    pub(crate) rods: Option<RodBuffers>,
     /// Only where roots have transforms of their own.
     pub(crate) roots: Option<RootBuffers>,
     /// What changes from sub-step to sub-step.
     pub(crate) steps: UniformArray<Step>,
     /// Whether the tip of any guide is pinned.
     pub(crate) pinned_tips: bool,
+}
+
+/// What [`Solver::Direct`] keeps of its rods; vertex-major as all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RodBuffers {
+    /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
+    pub(crate) rest: BufferId,
+    /// Six `vec4<f32>` a vertex.
+    pub(crate) state: BufferId,
+    /// Nine `vec4<f32>` a vertex.
+    pub(crate) scratch: BufferId,
 }
 
 /// The transforms of roots; an element a guide.
@@ -83,7 +98,8 @@ impl RootTransform {
 }
 
 impl SectionBuffers {
-    pub(crate) fn new(backend: &mut dyn Backend, strands: &Strands, center: Vec3, own_roots: bool) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &SectionDesc, center: Vec3) -> Result<Self> {
+        let (strands, own_roots) = (desc.strands, desc.own_roots);
         let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
         let follows = shape.guides * shape.follows;
@@ -95,6 +111,10 @@ impl SectionBuffers {
             follow_offsets: match follows {
                 0 => None,
                 _ => Some(storage(backend, "hair.follow_offsets", 16, follows)?),
+            },
+            rods: match desc.solver {
+                Solver::TressFx => None,
+                Solver::Direct => Some(RodBuffers::new(backend, shape.guide_vertices())?),
             },
             roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
             steps: UniformArray::new(backend, "hair.steps", STEPS)?,
@@ -122,6 +142,16 @@ pub(crate) const ALONE: usize = 0;
 pub(crate) const FIRST: usize = 1;
 /// All of them.
 pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
+
+impl RodBuffers {
+    fn new(backend: &mut dyn Backend, vertices: u32) -> Result<Self> {
+        Ok(Self {
+            rest: storage(backend, "hair.rod_rest", 16 * 2, vertices)?,
+            state: storage(backend, "hair.rods", 16 * 6, vertices)?,
+            scratch: storage(backend, "hair.rod_scratch", 16 * 9, vertices)?,
+        })
+    }
+}
 
 impl RootBuffers {
     fn new(backend: &mut dyn Backend, guides: u32) -> Result<Self> {

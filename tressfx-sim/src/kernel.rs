@@ -4,6 +4,7 @@
 //! strands, so that a kernel that does the work of several can import them.
 
 pub(crate) mod collide;
+pub(crate) mod direct;
 pub(crate) mod integrate;
 pub(crate) mod lengths;
 pub(crate) mod local_shape;
@@ -28,6 +29,7 @@ const GROUP: u32 = 64;
 /// The WGSL modules that the kernels share.
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
+    ("joint", include_str!("../shaders/joint.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),

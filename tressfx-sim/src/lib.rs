@@ -6,6 +6,8 @@
 //! edges have their exact length at the end of each. [`HairSim`] makes its buffers and pipelines once and then only writes
 //! passes into a [`PassList`](tressfx_core::pass::PassList). It never names a backend, submits or waits.
 //!
+//! [`Solver::Direct`] moves strands as rods instead, all edges of a strand at once ([`reference::direct`] says how).
+//!
 //! A kernel has one name everywhere. `integrate`, for example, is the file `shaders/integrate.wgsl`, the Rust function in
 //! `kernel/integrate.rs` that makes its pass, the f64 function `integrate` in [`mod@reference`] and the label
 //! `hair.sim.integrate`.
@@ -21,6 +23,7 @@ mod kernel;
 pub mod metrics;
 mod params;
 pub mod reference;
+mod rods;
 mod section;
 mod sim;
 mod solver;
@@ -34,6 +37,7 @@ pub use collider::{CapsuleMotion, Collider, ColliderMotion};
 pub use error::SimError;
 pub use input::StepInput;
 pub use params::{ParamError, SimParams};
+pub use rods::Standing;
 pub use sim::{HairSim, SectionDesc, StepReport};
 pub use solver::Solver;
 pub use stage::Stage;

@@ -58,6 +58,32 @@ pub struct SimParams {
     pub wind_drag: f32,
     /// Coefficient of Coulomb friction on capsules, from 0, which is ice, to 1.
     pub friction: f32,
+    /// Of the solver `Direct`: the length, in metres, at which a strand starts to bend under its own weight,
+    /// `(EI / (density * area * g))^(1/3)` with `g` = 9.81 m/s^2; 0.002 to 10. Held horizontally, a strand of this length droops by
+    /// an eighth of it. Single hairs have 0.03 to 0.06, gelled ones 0.3 to 1.
+    pub bending_length: f32,
+    /// Of `Direct`: twist stiffness over bending stiffness, 0.1 to 10; real hair has about 0.75.
+    pub twist_ratio: f32,
+    /// Of `Direct`: the time, s, by which the moments of bending and twist lag behind, 0 to 1. A swing of circular frequency `w`
+    /// that bending makes has the damping ratio `w * internal_damping / 2`.
+    pub internal_damping: f32,
+    /// Of `Direct`: the rate at which still air stops a strand that moves across itself, 1/s, 0 to 1000. A single hair has 20 to
+    /// 40. It is measured against the air: hair in a wind never outruns it.
+    pub air_drag: f32,
+    /// Of `Direct`: the same for a strand that moves along itself, as a share of it, from 0.25 to 1. A slender cylinder has a
+    /// half.
+    pub air_drag_along: f32,
+    /// Of `Direct`: the frequency, in Hz, of a spring that pulls each vertex to where the root carries its rest pose, 0 to 100.
+    pub pull_frequency: f32,
+    /// Of `Direct`: the share of gravity that the pose of the file is held against, from 0 to 1. With 1 hair does not sag. Where a
+    /// pose is no stable equilibrium, the bending length of the strand is raised until it is ([`HairSim::standing`]). It is
+    /// found for the material that the simulation is made with.
+    ///
+    /// [`HairSim::standing`]: crate::HairSim::standing
+    pub sag_free: f32,
+    /// Of `Direct`: the most rounds of Newton's method in a sub-step, 1 to 8. The second one follows only where a strand
+    /// moves fast.
+    pub rounds: u32,
 }
 
 impl Default for SimParams {
@@ -76,6 +102,14 @@ impl Default for SimParams {
             tip_separation: None,
             wind_drag: 3.0,
             friction: 0.4,
+            bending_length: 0.05,
+            twist_ratio: 0.77,
+            internal_damping: 0.0,
+            air_drag: 20.0,
+            air_drag_along: 0.5,
+            pull_frequency: 0.0,
+            sag_free: 1.0,
+            rounds: 2,
         }
     }
 }
@@ -123,7 +157,15 @@ impl SimParams {
         within("max_speed", self.max_speed, 0.001..=1000.0)?;
         within("tip_separation", self.tip_separation.unwrap_or(0.0), -1.0..=100.0)?;
         within("wind_drag", self.wind_drag, 0.0..=1000.0)?;
-        within("friction", self.friction, 0.0..=1.0)
+        within("friction", self.friction, 0.0..=1.0)?;
+        within("bending_length", self.bending_length, 0.002..=10.0)?;
+        within("twist_ratio", self.twist_ratio, 0.1..=10.0)?;
+        within("internal_damping", self.internal_damping, 0.0..=1.0)?;
+        within("air_drag", self.air_drag, 0.0..=1000.0)?;
+        within("air_drag_along", self.air_drag_along, 0.25..=1.0)?;
+        within("pull_frequency", self.pull_frequency, 0.0..=100.0)?;
+        within("sag_free", self.sag_free, 0.0..=1.0)?;
+        within("rounds", self.rounds, 1..=8)
     }
 
     /// Whether the global shape pulls at all.

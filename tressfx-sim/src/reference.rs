@@ -1,9 +1,10 @@
 //! The kernels in f64 on the CPU, one strand at a time. Tests compare the results of the GPU with these.
 //!
 //! Every function does what the kernel of the same name does, with the same [`Step`]; [`follow_strand`] is the part of the
-//! kernel `tangents` that places follow strands. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
+//! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
 mod collide;
+pub mod direct;
 mod integrate;
 mod lengths;
 mod local_shape;

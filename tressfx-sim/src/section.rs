@@ -8,6 +8,7 @@ use tressfx_core::pass::PassList;
 
 use crate::buffers::{CapsuleBuffers, SectionBuffers};
 use crate::kernel::collide::collide;
+use crate::kernel::direct::direct;
 use crate::kernel::integrate::integrate;
 use crate::kernel::lengths::lengths;
 use crate::kernel::local_shape::local_shape;
@@ -50,6 +51,7 @@ struct Passes {
     lengths: Pass,
     recovery: Pass,
     collide: Option<Pass>,
+    direct: Option<Pass>,
     tangents: Pass,
 }
 
@@ -61,9 +63,9 @@ impl SimSection {
         center: Vec3,
         shared: &Shared,
     ) -> Result<Self> {
-        let buffers = SectionBuffers::new(backend, desc.strands, center, desc.own_roots)?;
+        let buffers = SectionBuffers::new(backend, desc, center)?;
         let passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &buffers, shared }, &desc.params)?;
-        let info = SectionInfo::of(desc.strands);
+        let info = SectionInfo { solver: desc.solver, ..SectionInfo::of(desc.strands) };
         Ok(Self { buffers, info, solver: desc.solver, params: desc.params.clone(), passes })
     }
 
@@ -105,6 +107,7 @@ impl SimSection {
             Stage::Lengths => Some(&passes.lengths),
             Stage::Recovery => Some(&passes.recovery),
             Stage::Collide => passes.collide.as_ref(),
+            Stage::Direct => passes.direct.as_ref(),
             Stage::Tangents => Some(&passes.tangents),
         };
         pass.iter().for_each(|pass| pass.record(list, step));
@@ -112,8 +115,9 @@ impl SimSection {
 }
 
 /// What of the parameters the passes are specialised on. The others are uniforms.
-fn specialization(params: &SimParams) -> (bool, u32) {
-    (params.has_global_shape(), params.length_iterations)
+fn specialization(params: &SimParams) -> (bool, u32, bool, bool) {
+    let (damped, pulled) = (params.internal_damping > 0.0, params.pull_frequency > 0.0);
+    (params.has_global_shape(), params.length_iterations, damped, pulled)
 }
 
 impl Passes {
@@ -126,6 +130,7 @@ impl Passes {
             lengths: lengths(maker, params)?,
             recovery: recovery(maker)?,
             collide: collide(maker)?,
+            direct: direct(maker, params)?,
             tangents: tangents(maker)?,
         })
     }

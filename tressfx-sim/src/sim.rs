@@ -16,6 +16,7 @@ use crate::error::SimError;
 use crate::input::{StepInput, check_pose};
 use crate::kernel::Kernels;
 use crate::params::SimParams;
+use crate::rods::{GpuRods, Standing};
 use crate::section::{Shared, SimSection};
 use crate::solver::{Conditions, Solver};
 use crate::stage::Stage;
@@ -45,6 +46,12 @@ impl<'a> SectionDesc<'a> {
     #[must_use]
     pub fn with_own_roots(self) -> Self {
         Self { own_roots: true, ..self }
+    }
+
+    /// The same with another solver.
+    #[must_use]
+    pub fn with_solver(self, solver: Solver) -> Self {
+        Self { solver, ..self }
     }
 }
 
@@ -78,6 +85,8 @@ pub struct HairSim {
     resets: u64,
     /// The capsules of the frame that is being recorded; kept for its memory.
     capsules: CapsuleList,
+    /// Of each section.
+    standing: Vec<Option<Standing>>,
     /// Of everything above.
     owner: Owner,
 }
@@ -114,12 +123,18 @@ impl HairSim {
             }
             Ok::<_, tressfx_core::Error>((shared, kernels, made))
         })?;
+        let mut standing = Vec::with_capacity(sections.len());
         for (section, desc) in made.iter().zip(sections) {
             section.buffers.upload(list, desc.strands);
+            standing.push(section.buffers.rods.map(|rods| {
+                let of_section = GpuRods::new(desc.strands, &desc.params);
+                list.upload(rods.rest, 0, &of_section.entries);
+                of_section.standing
+            }));
         }
         let strand_buffers = made.iter().map(|section| section.buffers.strands).collect();
         let capsules = CapsuleList::default();
-        Ok(Self { sections: made, strand_buffers, kernels, shared, clock, resets: 0, capsules, owner })
+        Ok(Self { sections: made, strand_buffers, kernels, shared, clock, resets: 0, capsules, standing, owner })
     }
 
     /// Records a frame: any number of sub-steps, follow strands and tangents. Sections are recorded stage by stage, so that
@@ -133,6 +148,7 @@ impl HairSim {
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
+        self.check_contacts(input)?;
         let plan = self.clock.advance(input.dt, input.head);
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
@@ -214,6 +230,12 @@ impl HairSim {
     /// What the simulation shares with the rendering, a section each.
     pub fn buffers(&self) -> &[StrandBuffers] {
         &self.strand_buffers
+    }
+
+    /// How the strands of a section stand in the pose of the file under gravity; `None` where its solver does not ask, or there is no
+    /// such section.
+    pub fn standing(&self, section: usize) -> Option<Standing> {
+        self.standing.get(section).copied().flatten()
     }
 
     /// How time is cut.
@@ -313,6 +335,18 @@ impl HairSim {
         self.owner.destroy(backend);
     }
 
+    /// Refuses colliders of sections that know no contacts.
+    fn check_contacts(&self, input: &StepInput) -> Result<(), SimError> {
+        let without = |&section: &usize| self.sections[section].solver() == Solver::Direct;
+        for section in (0..self.sections.len()).filter(without) {
+            let touches = input.colliders.iter().position(|collider| !collider.except.contains(&section));
+            if let Some(collider) = touches {
+                return Err(SimError::NoContacts { collider, section });
+            }
+        }
+        Ok(())
+    }
+
     fn upload_capsules(&self, list: &mut PassList, capsules: &CapsuleList) {
         if let Some(buffers) = self.shared.capsules.filter(|_| !capsules.capsules.is_empty()) {
             list.upload(buffers.capsules, 0, &capsules.capsules);
@@ -326,7 +360,9 @@ impl HairSim {
             let step = Step::reset(section.params(), &section.info, rotation);
             section.buffers.steps.upload(list, ALONE, &[step]);
         }
-        Solver::RESET.iter().for_each(|&stage| self.record_stage(list, stage));
+        for section in &self.sections {
+            section.solver().reset().iter().for_each(|&stage| section.record(list, stage, ALONE));
+        }
     }
 
     fn record_sub_steps(&mut self, list: &mut PassList, sub_steps: &[SubStep], input: &StepInput) {

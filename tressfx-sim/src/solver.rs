@@ -10,6 +10,10 @@ pub enum Solver {
     /// That of TressFX: a position is integrated, and constraints correct it one after the other.
     #[default]
     TressFx,
+    /// Rods whose edges turn and never stretch, with bending and twist; all forces are implicit, and all edges of a strand are solved
+    /// for at once. Its material is in SI units and means the same at any resolution and sub-step. It has no contacts yet:
+    /// colliders have to leave its sections out.
+    Direct,
 }
 
 /// What decides whether a stage has an effect in a sub-step.
@@ -22,7 +26,13 @@ pub(crate) struct Conditions {
 
 impl Solver {
     /// The stages of a reset.
-    pub const RESET: [Stage; 2] = [Stage::Roots, Stage::Integrate];
+    pub fn reset(self) -> &'static [Stage] {
+        match self {
+            Self::TressFx => &[Stage::Roots, Stage::Integrate],
+            Self::Direct => &[Stage::Roots, Stage::Direct],
+        }
+    }
+
     /// The stage that a frame ends with, whatever the solver.
     pub const FRAME_END: Stage = Stage::Tangents;
 
@@ -38,6 +48,7 @@ impl Solver {
                 Stage::Recovery,
                 Stage::Collide,
             ],
+            Self::Direct => &[Stage::Roots, Stage::Direct],
         }
     }
 

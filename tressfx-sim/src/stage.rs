@@ -20,6 +20,8 @@ pub enum Stage {
     Recovery,
     /// Strands leave the capsules.
     Collide,
+    /// All of a sub-step of rods; or the reset to the rest pose.
+    Direct,
     /// Follow strands are placed, and all strands get their tangents; once a frame.
     Tangents,
 }
@@ -35,6 +37,7 @@ impl Stage {
             Self::Lengths => "hair.sim.lengths",
             Self::Recovery => "hair.sim.recovery",
             Self::Collide => "hair.sim.collide",
+            Self::Direct => "hair.sim.direct",
             Self::Tangents => "hair.sim.tangents",
         }
     }

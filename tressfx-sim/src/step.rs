@@ -17,6 +17,7 @@ use tressfx_core::strands::Strands;
 
 use crate::clock::SubStep;
 use crate::params::SimParams;
+use crate::solver::Solver;
 use crate::wind::Wind;
 
 /// The length of the step for which TressFX states stiffness and damping, s.
@@ -40,7 +41,8 @@ gpu_struct! {
         pub gravity: Vec3,
         /// The longest displacement relative to the head.
         pub max_displacement: f32,
-        /// Displacement by the wind from the four corners of its cone, across an edge.
+        /// Displacement by the wind from the four corners of its cone, across an edge; for [`Solver::Direct`] its velocity,
+        /// units/s.
         pub wind: [Vec4; 4],
         /// Share of the distance to the global shape that a vertex is moved, at the root.
         pub global_stiffness: f32,
@@ -72,8 +74,24 @@ gpu_struct! {
         pub first_capsule: u32,
         /// The capsule after the last one.
         pub end_capsule: u32,
-        /// Nothing.
-        pub unused: u32,
+        /// Not 0: the past of a strand says nothing, since the sub-step before had another length.
+        pub first_order: u32,
+        /// Length of the sub-step, s.
+        pub length: f32,
+        /// Bending stiffness over the mass of unit length, units^4/s^2.
+        pub bending: f32,
+        /// Twist stiffness over bending stiffness.
+        pub twist_ratio: f32,
+        /// Time by which bending moments lag behind, s.
+        pub internal_damping: f32,
+        /// Rate at which still air stops hair that moves across itself, 1/s.
+        pub drag_across: f32,
+        /// The same along itself.
+        pub drag_along: f32,
+        /// Stiffness of the spring to the rest pose over mass, 1/s^2.
+        pub pull: f32,
+        /// The most rounds of Newton's method.
+        pub rounds: u32,
     }
 }
 
@@ -86,12 +104,15 @@ pub struct SectionInfo {
     pub metres_per_unit: f32,
     /// The groom's own tip separation, where the parameters give none.
     pub tip_separation: f32,
+    /// What solves its equations of motion.
+    pub solver: Solver,
 }
 
 impl SectionInfo {
-    /// That of a section of these strands.
+    /// That of a section of these strands, with the default solver.
     pub fn of(strands: &Strands) -> Self {
         Self {
+            solver: Solver::default(),
             shape: StrandShape::of(strands),
             metres_per_unit: strands.metres_per_unit,
             tip_separation: strands.tip_separation,
@@ -104,6 +125,12 @@ pub fn spring_share(stiffness: f32, length: f64) -> f64 {
     let (stiffness, ratio) = (f64::from(stiffness), length / REFERENCE_STEP);
     let spring = stiffness * ratio * ratio;
     spring / (1.0 - stiffness + spring)
+}
+
+/// Bending stiffness over the mass of unit length, units^4/s^2.
+pub(crate) fn bending(params: &SimParams, metres_per_unit: f32) -> f64 {
+    const G: f64 = 9.81;
+    G * f64::from(params.bending_length).powi(3) / f64::from(metres_per_unit).powi(4)
 }
 
 /// How strongly the displacements of neighbouring vertices are smoothed in strands of `vertices` vertices.
@@ -130,7 +157,10 @@ impl Step {
         let metres = f64::from(info.metres_per_unit);
         let max_displacement = f64::from(params.max_speed) * sub.length / metres;
         let drag = f64::from(params.wind_drag) * square / metres;
-        let blow = |corner: Vec3| (corner.as_dvec3() * drag).clamp_length_max(max_displacement).as_vec3().extend(0.0);
+        let blow = |corner: Vec3| match info.solver {
+            Solver::TressFx => (corner.as_dvec3() * drag).clamp_length_max(max_displacement).as_vec3().extend(0.0),
+            Solver::Direct => (corner.as_dvec3() / metres).as_vec3().extend(0.0),
+        };
         let iterations = f64::from(params.local_iterations);
         let local = spring_share(params.local_stiffness, sub.length);
         let shocked = sub.head_acceleration * info.metres_per_unit > params.shock_acceleration;
@@ -162,7 +192,15 @@ impl Step {
             root_share: sub.share_of_remaining_frame as f32,
             first_capsule: 0,
             end_capsule: 0,
-            unused: 0,
+            first_order: u32::from((sub.length_ratio - 1.0).abs() > 1e-9),
+            length: sub.length as f32,
+            bending: bending(params, info.metres_per_unit) as f32,
+            twist_ratio: params.twist_ratio,
+            internal_damping: params.internal_damping,
+            drag_across: params.air_drag,
+            drag_along: params.air_drag * params.air_drag_along,
+            pull: (std::f32::consts::TAU * params.pull_frequency).powi(2),
+            rounds: params.rounds,
         }
     }
 }

@@ -1,10 +1,11 @@
 //! A whole groom in f64.
 
-use glam::{DVec3, Quat, Vec3, Vec4};
+use glam::{DQuat, DVec3, Quat, Vec3, Vec4};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
+use super::direct::{Rod, RodRest, direct_guide};
 use super::{
     Guide, GuideRoot, RootPlace, collide, follow_strand, integrate, lengths, local_shape, recovery, roots, wind,
 };
@@ -14,7 +15,9 @@ use crate::collider::CapsuleMotion;
 use crate::error::SimError;
 use crate::input::StepInput;
 use crate::params::SimParams;
+use crate::rods::rod_rest;
 use crate::sim::{SectionDesc, StepReport};
+use crate::solver::Solver;
 use crate::step::{SectionInfo, Step};
 
 /// What [`HairSim`](crate::HairSim) does, in f64 on the CPU.
@@ -38,6 +41,8 @@ struct Section<'a> {
     /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where
     /// roots ride on the head.
     roots: Vec<(RootPlace, RootPlace, GuideRoot)>,
+    /// One a guide; empty where another solver moves them.
+    rods: Vec<(RodRest, Rod)>,
 }
 
 impl<'a> Simulation<'a> {
@@ -78,13 +83,19 @@ impl<'a> Simulation<'a> {
             if let Some(rotation) = plan.reset {
                 section.step = Step::reset(&section.params, &section.info, rotation);
                 section.move_roots();
-                section.each_guide(|step, _, _, guide| integrate(step, guide));
+                match section.info.solver {
+                    Solver::TressFx => section.each_guide(|step, _, _, guide| integrate(step, guide)),
+                    Solver::Direct => _ = section.rods_step(),
+                }
             }
             for sub_step in &plan.sub_steps {
                 section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
                 let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
                 let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
-                self.non_finite += section.sub_step(&capsules, input.wind.is_some());
+                self.non_finite += match section.info.solver {
+                    Solver::TressFx => section.sub_step(&capsules, input.wind.is_some()),
+                    Solver::Direct => section.rods_sub_step(),
+                };
             }
         }
         Ok(StepReport {
@@ -132,7 +143,13 @@ impl<'a> Simulation<'a> {
 impl<'a> Section<'a> {
     fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
-        let info = SectionInfo::of(strands);
+        let info = SectionInfo { solver: desc.solver, ..SectionInfo::of(strands) };
+        let rod = |guide: usize| {
+            let (rest, _) = rod_rest(strands, &desc.params, guide);
+            let rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+            (rest, rod)
+        };
+        let rods = if desc.solver == Solver::Direct { strands.guides as usize } else { 0 };
         let still = (RootPlace::WITH_HEAD, RootPlace::WITH_HEAD);
         let root = GuideRoot { now: still.0, last: still.1 };
         let roots = if desc.own_roots { strands.guides as usize } else { 0 };
@@ -145,6 +162,7 @@ impl<'a> Section<'a> {
             positions: vec![DVec3::ZERO; strands.rest.len()],
             previous: vec![DVec3::ZERO; strands.rest.len()],
             roots: vec![(still.0, still.1, root); roots],
+            rods: (0..rods).map(rod).collect(),
         }
     }
 
@@ -170,6 +188,23 @@ impl<'a> Section<'a> {
             non_finite += u64::from(recovery(step, guide));
             collide(step, guide, capsules);
         });
+        non_finite
+    }
+
+    /// One sub-step of rods; says how many had become non-finite.
+    fn rods_sub_step(&mut self) -> u64 {
+        self.move_roots();
+        self.rods_step()
+    }
+
+    fn rods_step(&mut self) -> u64 {
+        let mut rods = std::mem::take(&mut self.rods);
+        let mut non_finite = 0;
+        self.each_guide(|step, _, index, guide| {
+            let (rest, rod) = &mut rods[index as usize];
+            non_finite += u64::from(direct_guide(step, guide, rest, rod, index));
+        });
+        self.rods = rods;
         non_finite
     }
 

@@ -22,7 +22,7 @@ pub fn wind(step: &Step, guide: &mut Guide, strand: u32) {
 }
 
 /// The mix of the wind's four corners that is the strand's own.
-fn wind_of(step: &Step, strand: u32) -> DVec3 {
+pub(super) fn wind_of(step: &Step, strand: u32) -> DVec3 {
     let bits = scrambled(strand);
     let (x, y) = (f64::from(bits & 0xffff) / 65535.0, f64::from(bits >> 16) / 65535.0);
     let [a, b, c, d] = step.wind.map(position);

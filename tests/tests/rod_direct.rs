@@ -1,0 +1,258 @@
+//! The f64 function of the `Direct` solver against what thin rods are known to do.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::{DQuat, DVec3};
+use tressfx_conformance::rod::kirchhoff::Kirchhoff;
+use tressfx_conformance::rod::links::Links;
+use tressfx_conformance::rod::strand::{LENGTH, bend, energy, line, run, settled, step, tip};
+use tressfx_conformance::rod::{G, chain, elastica, pendulum, threshold};
+use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, direct};
+
+/// Of a chain of edges: as good as none.
+const NO_BENDING: f64 = 1e-4;
+/// The sub-step that frames are cut into by default, s.
+const SUB_STEP: f64 = 1.0 / 120.0;
+
+#[test]
+fn tips_are_where_the_heavy_elastica_has_them() {
+    for (vertices, allowed) in [(8, 0.03), (16, 0.015), (32, 0.0075), (64, 0.005)] {
+        let rest = line(vertices, DVec3::X);
+        let mut worst = (0.0, 0.0);
+        for ratio in [0.1, 0.3, 1.0, 2.0, 3.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0] {
+            let rod = settled(&step(1.0 / 60.0, LENGTH / ratio), &rest, 6.0);
+            let [along, up] = elastica::tip(ratio);
+            let error = (tip(&rod) / LENGTH).distance(DVec3::new(along, up, 0.0));
+            worst = if error > worst.0 { (error, ratio) } else { worst };
+        }
+        println!("{vertices} vertices: the tip is off by {:.2} % of length at L / Lb = {}", 100.0 * worst.0, worst.1);
+        assert!(worst.0 < allowed, "{vertices} vertices: {worst:?}");
+    }
+}
+
+#[test]
+fn neither_sub_steps_nor_rounds_change_the_droop() {
+    let rest = line(16, DVec3::X);
+    for ratio in [0.3, 3.0, 30.0] {
+        let rest_at = |length: f64, rounds: u32| {
+            let step = RodStep { rounds, ..step(length, LENGTH / ratio) };
+            tip(&settled(&step, &rest, 4.0))
+        };
+        let first = rest_at(1.0 / 60.0, 2);
+        for (length, rounds) in [(1.0 / 60.0, 1), (1.0 / 60.0, 6), (1.0 / 240.0, 2), (1.0 / 1000.0, 1)] {
+            let apart = first.distance(rest_at(length, rounds)) / LENGTH;
+            assert!(apart < 1e-5, "L / Lb = {ratio}, {length} s, {rounds} rounds: {apart:e}");
+        }
+    }
+}
+
+/// Frequency and damping ratio of a mode of a hanging strand, from its amplitude in the mode over ten periods.
+fn mode(vertices: usize, number: usize, length: f64) -> (f64, f64) {
+    let rest = line(vertices, DVec3::NEG_Y);
+    let step = step(length, NO_BENDING);
+    let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+    bend(&rest, &mut rod, |share| 1e-3 * LENGTH * chain::shape(number, share));
+    let share = |i: usize| chain::shape(number, i as f64 / (vertices - 1) as f64);
+    let amplitude = |rod: &Rod| (0..vertices).map(|i| rest.masses[i] * share(i) * rod.positions[i].x).sum::<f64>();
+    let steps = (10.0 * TAU / chain::frequency(LENGTH, number) / length) as usize;
+    let mut values = vec![amplitude(&rod)];
+    for _ in 0..steps {
+        direct(&step, &rest, &mut rod);
+        values.push(amplitude(&rod));
+    }
+    let crossings: Vec<f64> = (1..values.len())
+        .filter(|&i| (values[i] > 0.0) != (values[i - 1] > 0.0))
+        .map(|i| (i as f64 - values[i] / (values[i] - values[i - 1])) * length)
+        .collect();
+    let last = crossings.len() - 1;
+    let frequency = PI * last as f64 / (crossings[last] - crossings[0]);
+    // The largest value between two crossings, by the parabola through three.
+    let peak = |i: usize| {
+        let (a, b, c) = (values[i - 1].abs(), values[i].abs(), values[i + 1].abs());
+        (b >= a && b >= c).then(|| b - (a - c) * (a - c) / (8.0 * (a - 2.0 * b + c)))
+    };
+    let peaks: Vec<f64> = (1..values.len() - 1).filter_map(peak).collect();
+    let damping = (peaks[0] / peaks[peaks.len() - 1]).ln() / (PI * (peaks.len() - 1) as f64);
+    (frequency, damping)
+}
+
+#[test]
+fn a_hanging_strand_swings_in_the_modes_of_the_bessel_function() {
+    for vertices in [8, 16, 32, 64] {
+        for (number, allowed) in [(1, 0.01), (2, 0.02), (3, 0.035)] {
+            let (frequency, damping) = mode(vertices, number, SUB_STEP);
+            let error = frequency / chain::frequency(LENGTH, number) - 1.0;
+            println!("{vertices} vertices, mode {number}: {:+.2} %, damping ratio {damping:.4}", 100.0 * error);
+            assert!(error.abs() < allowed && damping.abs() < 0.01, "{vertices}, {number}: {error} {damping}");
+        }
+    }
+}
+
+#[test]
+fn one_edge_is_a_pendulum() {
+    let rest = line(2, DVec3::X);
+    let length = pendulum::of_rigid_rod(LENGTH);
+    let error = |sub_step: f64| {
+        let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+        run(&step(sub_step, NO_BENDING), &rest, &mut rod, 0.6);
+        let expected = pendulum::angle(length, FRAC_PI_2, 0.6);
+        let at = tip(&rod) / LENGTH;
+        (at.x.atan2(-at.y) - expected).abs()
+    };
+    let errors = [120.0, 240.0, 480.0].map(|rate| error(1.0 / rate));
+    println!("angle after 0.6 s is off by {errors:.6?} rad");
+    assert!(errors[0] < 0.025 && errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
+}
+
+/// Released from the horizontal, with a bending length of 1 cm.
+fn released(vertices: usize, sub_step: f64, seconds: f64, mut each: impl FnMut(&RodStep, &RodRest, &Rod)) -> DVec3 {
+    let (rest, step) = (line(vertices, DVec3::X), step(sub_step, 0.01));
+    let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+    for _ in 0..(seconds / sub_step).round() as usize {
+        direct(&step, &rest, &mut rod);
+        each(&step, &rest, &rod);
+    }
+    tip(&rod)
+}
+
+#[test]
+fn a_released_strand_falls_as_many_links_do() {
+    let mut links = Links::straight(LENGTH, G * 1e-6, 48, FRAC_PI_2);
+    links.run(0.3, 2000);
+    let [x, y] = links.places()[47];
+    for vertices in [8, 16, 32, 64] {
+        let error =
+            |rate: f64| released(vertices, 1.0 / rate, 0.3, |_, _, _| ()).distance(DVec3::new(x, y, 0.0)) / LENGTH;
+        let errors = [60.0, 120.0, 240.0].map(error);
+        println!("{vertices} vertices: the tip is off by {errors:.4?} of length at 60, 120, 240 sub-steps a second");
+        assert!(errors[1] < 0.05, "{vertices}: {errors:?}");
+    }
+}
+
+#[test]
+fn errors_fall_with_the_square_of_the_sub_step() {
+    let exact = released(16, 1.0 / 15360.0, 0.1, |_, _, _| ());
+    let rates = [60.0, 120.0, 240.0, 480.0, 960.0, 1920.0];
+    let errors = rates.map(|rate| released(16, 1.0 / rate, 0.1, |_, _, _| ()).distance(exact) / LENGTH);
+    println!("off by {errors:.7?} of length at {rates:?} sub-steps a second");
+    for (rate, pair) in rates.iter().zip(errors.windows(2)) {
+        assert!(pair[0] / pair[1] > 3.3, "from {rate} on: {errors:?}");
+    }
+}
+
+#[test]
+fn energy_never_grows_above_its_start() {
+    for vertices in [2, 5, 8, 32] {
+        for rate in [30.0, 60.0, 120.0, 240.0, 500.0, 1000.0] {
+            // The start has the energy 0; what it can lose is its height.
+            let mut most = f64::MIN;
+            let highest = |step: &RodStep, rest: &RodRest, rod: &Rod| most = most.max(energy(step, rest, rod));
+            released(vertices, 1.0 / rate, 1.5, highest);
+            let share = most / (G * LENGTH * LENGTH / 2.0);
+            assert!(share < 1e-3, "{vertices} vertices, 1 / {rate} s: {share}");
+        }
+    }
+}
+
+/// A helix along x: its points, as many as `vertices`.
+fn helix(vertices: usize, length: f64, radius: f64, pitch: f64) -> RodRest {
+    let rise = pitch / TAU;
+    let angle = length / radius.hypot(rise);
+    let at = |i: usize| {
+        let t = angle * i as f64 / (vertices - 1) as f64;
+        DVec3::new(radius * t.sin(), -rise * t, radius * t.cos())
+    };
+    RodRest::new(&(0..vertices).map(at).collect::<Vec<_>>(), 0)
+}
+
+#[test]
+fn a_helix_lengthens_as_a_kirchhoff_rod() {
+    let (length, radius, pitch, bending_length) = (0.3, 0.01_f64, 0.02_f64, 0.05_f64);
+    let rise = pitch / TAU;
+    let square = radius * radius + rise * rise;
+    // The frame of Frenet at the start: normal, binormal, tangent.
+    let tangent = DVec3::new(radius, -rise, 0.0).normalize();
+    let normal = DVec3::NEG_Z;
+    let root = DQuat::from_mat3(&glam::DMat3::from_cols(normal, tangent.cross(normal), tangent));
+    let torsion = -rise / square;
+    let rod = Kirchhoff {
+        length,
+        bending: G * bending_length.powi(3),
+        twist_ratio: 0.77,
+        natural: DVec3::new(0.0, radius / square, torsion),
+        gravity: DVec3::new(0.0, -G, 0.0),
+        steps: 4000,
+    };
+    let natural_tip = Kirchhoff { gravity: DVec3::ZERO, ..rod }.loaded(root, 1).expect("unloaded").1;
+    assert!(natural_tip.distance(helix(2000, length, radius, pitch).positions[1999]) < 1e-5, "{natural_tip}");
+    let (_, expected) = rod.loaded(root, 60).expect("a path without a turn");
+    let rest_height = rise / square.sqrt() * length;
+    println!("Kirchhoff: {:.2} % longer, tip at {expected}", 100.0 * (-expected.y / rest_height - 1.0));
+    for (vertices, allowed) in [(48, 0.02), (96, 0.01), (192, 0.01)] {
+        let rest = helix(vertices, length, radius, pitch);
+        let rod = settled(&step(1.0 / 60.0, bending_length), &rest, 5.0);
+        let longer = -tip(&rod).y / rest_height;
+        let off = tip(&rod).distance(expected) / length;
+        println!(
+            "{vertices} vertices: {:.2} % longer, tip off by {:.2} % of length",
+            100.0 * (longer - 1.0),
+            100.0 * off
+        );
+        assert!((longer / (-expected.y / rest_height) - 1.0).abs() < allowed, "{vertices}: {longer}");
+    }
+}
+
+#[test]
+fn an_upright_strand_falls_over_where_greenhill_says() {
+    let stands = |ratio: f64| line(32, DVec3::Y).is_stable(&step(SUB_STEP, LENGTH / ratio), 1.0);
+    let expected = threshold::greenhill();
+    assert!(stands(0.99 * expected) && !stands(1.01 * expected));
+    // The same in motion: a strand that is pushed a little stands up again, or falls.
+    let leaning = |ratio: f64, seconds: f64| {
+        let rest = line(32, DVec3::Y);
+        let step = RodStep { drag: [5.0; 2], ..step(1.0 / 60.0, LENGTH / ratio) };
+        let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+        run(&RodStep { gravity: DVec3::new(0.05, -G, 0.0), ..step }, &rest, &mut rod, 0.5);
+        let pushed = tip(&rod).x;
+        run(&step, &rest, &mut rod, seconds);
+        tip(&rod).x / pushed
+    };
+    let (below, above) = (leaning(0.95 * expected, 8.0), leaning(1.05 * expected, 8.0));
+    println!("leans by {below:.3} and by {above:.3} of what it was pushed");
+    assert!(below < 0.5 && above > 2.0, "{below} {above}");
+}
+
+#[test]
+fn a_loaded_tip_buckles_where_euler_says() {
+    // All mass at the tip.
+    let stands = |load: f64| {
+        let mut rest = line(32, DVec3::Y);
+        rest.masses.fill(0.0);
+        rest.masses[31] = load / G;
+        rest.is_stable(&step(SUB_STEP, 0.05), 1.0)
+    };
+    let expected = threshold::tip_load(step(SUB_STEP, 0.05).bending, LENGTH);
+    assert!(stands(0.99 * expected) && !stands(1.01 * expected));
+}
+
+#[test]
+fn a_hanging_arc_leaves_its_plane_where_bending_turns_into_twist() {
+    for arc in [8.0, 12.0] {
+        let expected = threshold::bend_twist(arc, 0.77);
+        let aside = |ratio: f64| {
+            // From the plane of the arc, x and y, a thousandth of the weight pulls it along z.
+            let vertices = 96;
+            let radius = LENGTH / arc;
+            let at = |i: usize| {
+                let t = arc * i as f64 / (vertices - 1) as f64;
+                DVec3::new(radius * (1.0 - t.cos()), -radius * t.sin(), 0.0)
+            };
+            let rest = RodRest::new(&(0..vertices).map(at).collect::<Vec<_>>(), 0);
+            let pull = RodStep { gravity: DVec3::new(0.0, -G, 1e-3 * G), ..step(1.0 / 60.0, LENGTH / ratio) };
+            (tip(&settled(&pull, &rest, 12.0)).z / LENGTH).abs()
+        };
+        let (below, above) = (aside(0.95 * expected), aside(1.05 * expected));
+        println!("arc of {arc}: aside by {below:.1e} below the threshold and {above:.1e} above it");
+        assert!(above > 10.0 * below, "{arc}: {below} {above}");
+    }
+}

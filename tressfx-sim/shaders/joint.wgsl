@@ -1,0 +1,63 @@
+// The joint between two edges of a rod: how far it is bent and twisted, and the torque of that.
+
+import package::vector::{after, rotate};
+
+/// A strain that changes by more than this within a sub-step has no rate: the joint has flipped over.
+const FLIP: f32 = 1.0;
+
+/// A joint in a pose.
+struct Joint {
+    /// The parent's frame, turned by half of the rest rotation of the joint.
+    middle: vec4<f32>,
+    /// What the child's frame, turned back by the other half, is turned from there; the shorter way.
+    turn: vec4<f32>,
+    /// Two components of bending and one of twist.
+    strain: vec3<f32>,
+}
+
+/// How stiff a joint is: its bending stiffness, what twist has of it, and the damping time over the length of the sub-step.
+struct Stiffness { bending: f32, twist_ratio: f32, lag: f32 }
+
+/// The strain of a turn over its axis part. Its energy has no pole and no kink at a half turn.
+fn slope(w: f32) -> f32 {
+    return 4.0 / (1.0 + w * w);
+}
+
+/// `half_turn` is half of the rest rotation from the parent to the child.
+fn joint_between(parent: vec4<f32>, half_turn: vec4<f32>, child: vec4<f32>) -> Joint {
+    let middle = after(parent, half_turn);
+    let back = after(child, vec4(-half_turn.xyz, half_turn.w));
+    let turn = after(vec4(-middle.xyz, middle.w), back);
+    let shorter = select(turn, -turn, turn.w < 0.0);
+    return Joint(middle, shorter, slope(shorter.w) * shorter.xyz);
+}
+
+/// The torque on the child, on the axes of the world; the parent gets the opposite. `past` is the strain that the rate of bending is
+/// measured from.
+fn torque_of(joint: Joint, stiffness: Stiffness, past: vec3<f32>) -> vec3<f32> {
+    let rate = joint.strain - past;
+    let lag = select(stiffness.lag, 0.0, dot(rate, rate) > FLIP * FLIP);
+    let weights = stiffness.bending * vec3(1.0, 1.0, stiffness.twist_ratio);
+    let moment = weights * (joint.strain + lag * rate);
+    let v = joint.turn.xyz;
+    let w = joint.turn.w;
+    let s = slope(w);
+    let torque = 0.5 * s * (w * moment + cross(v, moment)) + 0.25 * s * s * w * dot(v, moment) * v;
+    return rotate(joint.middle, -torque);
+}
+
+/// What stands for the derivative of the torque by a rotation between the edges: exact for small strains, too stiff for large ones.
+fn stiffness_of(joint: Joint, stiffness: Stiffness) -> mat3x3<f32> {
+    let axis = rotate(joint.middle, vec3(0.0, 0.0, 1.0));
+    let stiffer = 0.5 * slope(joint.turn.w);
+    let bending = stiffer * stiffer * stiffer * (1.0 + stiffness.lag) * stiffness.bending;
+    return scaled_identity(bending) + bending * (stiffness.twist_ratio - 1.0) * outer(axis, axis);
+}
+
+fn outer(a: vec3<f32>, b: vec3<f32>) -> mat3x3<f32> {
+    return mat3x3(a * b.x, a * b.y, a * b.z);
+}
+
+fn scaled_identity(scale: f32) -> mat3x3<f32> {
+    return mat3x3(vec3(scale, 0.0, 0.0), vec3(0.0, scale, 0.0), vec3(0.0, 0.0, scale));
+}

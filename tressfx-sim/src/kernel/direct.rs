@@ -1,0 +1,44 @@
+//! `hair.sim.direct`: an implicit sub-step of rods; also the reset to the rest pose.
+
+use tressfx_core::Result;
+use tressfx_core::shader::{Module, ShaderSource, Specialization};
+
+use super::{LIBRARY, Pass, PassMaker, wind};
+use crate::params::SimParams;
+
+pub(crate) const SOURCE: ShaderSource = ShaderSource {
+    label: "hair.sim.direct",
+    root: ("direct", include_str!("../../shaders/direct.wgsl")),
+    library: &WITH_WIND,
+};
+
+/// It asks for the wind of a strand.
+const WITH_WIND: [Module; LIBRARY.len() + 1] = {
+    let mut modules = [wind::SOURCE.root; LIBRARY.len() + 1];
+    let mut index = 0;
+    while index < LIBRARY.len() {
+        modules[index] = LIBRARY[index];
+        index += 1;
+    }
+    modules
+};
+
+/// `None` for a section with another solver.
+pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
+    let buffers = maker.buffers;
+    let Some(rods) = buffers.rods else { return Ok(None) };
+    let specialization = Specialization::new()
+        .feature("internal_damping", params.internal_damping > 0.0)
+        .feature("pull", params.pull_frequency > 0.0)
+        .feature("pinned_tips", buffers.pinned_tips);
+    let resources = [
+        ("rest", buffers.rest.into()),
+        ("rest_lengths", buffers.rest_lengths.into()),
+        ("rod_rest", rods.rest.into()),
+        ("rods", rods.state.into()),
+        ("rod_scratch", rods.scratch.into()),
+        ("positions", buffers.strands.positions.into()),
+        ("non_finite", maker.shared.non_finite.into()),
+    ];
+    maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
+}

@@ -1,0 +1,115 @@
+//! The joint between two edges: how far it is bent and twisted, and the torque of that.
+
+use glam::{DMat3, DQuat, DVec3};
+
+/// A strain that changes by more than this within a sub-step has no rate: the joint has flipped over.
+const FLIP: f64 = 1.0;
+
+/// A joint in a pose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Joint {
+    /// The parent's frame, turned by half of the rest rotation of the joint.
+    middle: DQuat,
+    /// What the child's frame, turned back by the other half, is turned from there; the shorter way.
+    turn: DQuat,
+    /// Two components of bending and one of twist: `s v`, with `v` the axis part of the turn, `w` its scalar part and
+    /// `s = 4 / (1 + w^2)`. For small angles it is the discrete curvature `2 tan(angle / 2)` up to the third order. It has no
+    /// pole at a half turn, where its square, the energy, has its highest point and no kink: there the shorter way changes its
+    /// side. With a kink, strands that are thrown about gain energy.
+    pub(super) strain: DVec3,
+}
+
+/// The strain of a turn over its axis part.
+fn slope(w: f64) -> f64 {
+    4.0 / (1.0 + w * w)
+}
+
+/// How stiff a joint is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stiffness {
+    pub(super) bending: f64,
+    pub(super) twist_ratio: f64,
+    /// Damping time over the length of the sub-step.
+    pub(super) lag: f64,
+}
+
+impl Joint {
+    /// `half` is half of the rest rotation from the parent to the child.
+    pub(super) fn new(parent: DQuat, half: DQuat, child: DQuat) -> Self {
+        let middle = parent * half;
+        let turn = middle.conjugate() * child * half.conjugate();
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        Self { middle, turn, strain: slope(turn.w) * turn.xyz() }
+    }
+
+    /// The torque on the child, on the axes of the world; the parent gets the opposite. `past` is the strain that the rate of
+    /// bending is measured from.
+    ///
+    /// It is the derivative of the energy `moment . strain / 2` by a rotation of the child: a rotation `phi` changes `v` by
+    /// `(w phi + phi x v) / 2` and `w` by `-phi . v / 2`, and so `s` by `s^2 w / 4 (phi . v)`.
+    pub(super) fn torque(&self, stiffness: &Stiffness, past: DVec3) -> DVec3 {
+        let rate = self.strain - past;
+        let lag = if rate.length_squared() > FLIP * FLIP { 0.0 } else { stiffness.lag };
+        let weights = stiffness.bending * DVec3::new(1.0, 1.0, stiffness.twist_ratio);
+        let moment = weights * (self.strain + lag * rate);
+        let (v, w) = (self.turn.xyz(), self.turn.w);
+        let s = slope(w);
+        let torque = s * (w * moment + v.cross(moment)) / 2.0 + s * s * w / 4.0 * v.dot(moment) * v;
+        self.middle * -torque
+    }
+
+    /// What stands for the derivative of the torque by a rotation between the edges: exact for small strains, too stiff for
+    /// large ones. Less makes Newton's method overshoot there, and strands gain energy.
+    pub(super) fn stiffness(&self, stiffness: &Stiffness) -> DMat3 {
+        let axis = self.middle * DVec3::Z;
+        let twist = (stiffness.twist_ratio - 1.0) * super::outer(axis, axis);
+        let stiffer = (slope(self.turn.w) / 2.0).powi(3);
+        stiffer * (1.0 + stiffness.lag) * stiffness.bending * (DMat3::IDENTITY + twist)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::EulerRot;
+
+    use super::*;
+
+    #[test]
+    fn torque_is_the_derivative_of_energy() {
+        let turn = |x: f64, y: f64, z: f64| DQuat::from_euler(EulerRot::XYZ, x, y, z);
+        let (parent, half) = (turn(0.3, -1.0, 2.0), turn(0.1, 0.4, -0.2));
+        let stiffness = Stiffness { bending: 2.0, twist_ratio: 0.77, lag: 0.0 };
+        let weights = stiffness.bending * DVec3::new(1.0, 1.0, stiffness.twist_ratio);
+        for bend in [turn(0.01, 0.02, 0.03), turn(0.8, -0.5, 0.7), turn(2.0, 1.0, -1.0)] {
+            let child = parent * half * bend * half;
+            let energy = |parent: DQuat, child: DQuat| {
+                let strain = Joint::new(parent, half, child).strain;
+                0.5 * (weights * strain).dot(strain)
+            };
+            let torque = Joint::new(parent, half, child).torque(&stiffness, DVec3::ZERO);
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let by = |size: f64| DQuat::from_scaled_axis(size * axis);
+                let slope = |of: &dyn Fn(DQuat) -> f64| (of(by(1e-5)) - of(by(-1e-5))) / 2e-5;
+                let on_child = -slope(&|by| energy(parent, by * child));
+                let on_parent = -slope(&|by| energy(by * parent, child));
+                assert!((on_child - torque.dot(axis)).abs() < 1e-8, "{on_child} {torque}");
+                assert!((on_parent + torque.dot(axis)).abs() < 1e-8, "{on_parent} {torque}");
+            }
+        }
+    }
+
+    #[test]
+    fn stiffness_is_the_derivative_of_the_torque_of_a_straight_joint() {
+        let stiffness = Stiffness { bending: 2.0, twist_ratio: 0.77, lag: 0.5 };
+        let frame = DQuat::from_euler(EulerRot::XYZ, 0.3, -1.0, 2.0);
+        let matrix = Joint::new(frame, DQuat::IDENTITY, frame).stiffness(&stiffness);
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let torque = |size: f64| {
+                let child = DQuat::from_scaled_axis(size * axis) * frame;
+                Joint::new(frame, DQuat::IDENTITY, child).torque(&stiffness, DVec3::ZERO)
+            };
+            let slope = (torque(1e-5) - torque(-1e-5)) / 2e-5;
+            assert!((slope + matrix * axis).length() < 1e-8, "{slope} {}", matrix * axis);
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! One round of Newton's method: elimination from the tip to the root, and back.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::joint::{Joint, Stiffness};
+use super::{Motion, Rod, RodRest, outer};
+
+/// How stiff the spring is that holds a tip: its stiffness times the square of the sub-step, over the mass of the tip.
+const HOLD: f64 = 1e4;
+/// The longest rotation of an edge in a round, rad.
+const LONGEST_TURN: f64 = 1.5;
+
+/// What is left of an edge after the elimination: `turn = free + by_parent * turn of the parent - by_place * displacement of the
+/// vertex before it`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Eliminated {
+    free: DVec3,
+    by_parent: DMat3,
+    by_place: DMat3,
+}
+
+/// Half of a quadratic function of the displacement of a vertex and of the rotation of the edge before it: what all that hangs on
+/// them wants.
+#[derive(Clone, Copy, Debug)]
+struct Beyond {
+    place: DMat3,
+    /// Displacement times rotation.
+    mixed: DMat3,
+    turn: DMat3,
+    force: DVec3,
+    torque: DVec3,
+    /// The sum of the forces alone.
+    pull: DVec3,
+}
+
+/// A round; gives the longest rotation of an edge, rad. Positions are left to be placed anew.
+pub(super) fn round(motion: &Motion, rod: &mut Rod) -> f64 {
+    let rest = motion.rest;
+    let edges = rod.frames.len();
+    let mut eliminated = vec![Eliminated::default(); edges];
+    let mut beyond = at_tip(motion, rod);
+    for edge in (rest.held..edges).rev() {
+        eliminated[edge] = eliminate(motion, rod, edge, &mut beyond);
+    }
+    let (mut moved, mut parent, mut longest) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
+    for (edge, left) in eliminated.iter().enumerate().skip(rest.held) {
+        let Eliminated { free, by_parent, by_place } = *left;
+        let turn = (free + by_parent * parent - by_place * moved).clamp_length_max(LONGEST_TURN);
+        longest = longest.max(turn.length());
+        moved += turn.cross(rod.frames[edge] * DVec3::Z) * rest.lengths[edge];
+        rod.frames[edge] = (DQuat::from_scaled_axis(turn) * rod.frames[edge]).normalize();
+        parent = turn;
+    }
+    longest
+}
+
+/// What the tip wants, with what holds it: a stiff spring and the force that it has come to, which takes the error of the spring
+/// away in time (the augmented Lagrangian of Hestenes 1969 and Powell 1969).
+fn at_tip(motion: &Motion, rod: &Rod) -> Beyond {
+    let (rest, step, last) = (motion.rest, motion.step, rod.frames.len() - 1);
+    let (mut place, mut force) = motion.inertia(last + 1, rod.positions[last + 1]);
+    let (mut turn, mut torque) = (DMat3::ZERO, DVec3::ZERO);
+    // The force that the tip has come to is held with, not that of the spring, which changes its sign from round to round.
+    let pull = force + rod.holding;
+    if let Some(hold) = step.tip {
+        let spring = hold_stiffness(rest);
+        place += spring * DMat3::IDENTITY;
+        force += rod.holding + spring * (hold.place - rod.positions[last + 1]);
+        if let Some(frame) = hold.frame {
+            let bending = step.bending * rest.stiffening / rest.spans[last] * motion.length * motion.length;
+            let stiffness = Stiffness { bending: 2.0 * bending, twist_ratio: step.twist_ratio, lag: 0.0 };
+            let joint = Joint::new(rod.frames[last], DQuat::IDENTITY, frame);
+            torque = -joint.torque(&stiffness, DVec3::ZERO);
+            turn = joint.stiffness(&stiffness);
+        }
+    }
+    Beyond { place, mixed: DMat3::ZERO, turn, force, torque, pull }
+}
+
+/// The stiffness of the spring that holds a tip, times the square of the sub-step.
+pub(super) fn hold_stiffness(rest: &RodRest) -> f64 {
+    HOLD * rest.masses.last().copied().unwrap_or(0.0)
+}
+
+/// Takes an edge out of the system, and gives the vertex before it and its parent what the edge and all beyond want of them.
+fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> Eliminated {
+    let (rest, step) = (motion.rest, motion.step);
+    let length = rest.lengths[edge];
+    let along = rod.frames[edge] * DVec3::Z;
+    // The vertex after the edge moves by the one before it and `arm * turn`.
+    let arm = -length * cross_matrix(along);
+    let mixed = beyond.mixed + beyond.place * arm;
+    let half = arm.transpose() * beyond.mixed;
+    let mut turn = beyond.turn + half + half.transpose() + arm.transpose() * beyond.place * arm;
+    let mut torque = beyond.torque + arm.transpose() * beyond.force;
+    let across = DMat3::IDENTITY - outer(along, along);
+    // Of the second derivative of a turn only what holds it: tension pulls an edge straight, pressure would let it fall.
+    turn += length * along.dot(beyond.pull).max(0.0) * across;
+    let correction = rest.mass_correction();
+    turn -= correction * length.powi(3) / 6.0 * across;
+    let lag = (motion.free(edge + 1) - motion.free(edge)) - (rod.positions[edge + 1] - rod.positions[edge]);
+    torque -= correction * length / 6.0 * arm.transpose() * lag;
+
+    let parent = if edge == 0 { step.root } else { rod.frames[edge - 1] };
+    let joint = Joint::new(parent, rest.joints[edge], rod.frames[edge]);
+    let square = motion.length * motion.length;
+    let bending = step.bending * rest.stiffening / rest.spans[edge] * square;
+    let stiffness = Stiffness { bending, twist_ratio: step.twist_ratio, lag: step.damping / motion.length };
+    let own = joint.torque(&stiffness, motion.past_strains[edge]);
+    let spring = joint.stiffness(&stiffness);
+
+    let inverse = (turn + spring).inverse();
+    let by_parent = inverse * spring;
+    let by_place = inverse * mixed.transpose();
+    let free = inverse * (torque + own);
+    let (mass, force) = motion.inertia(edge, rod.positions[edge]);
+    *beyond = Beyond {
+        place: symmetric(beyond.place - mixed * by_place) + mass,
+        mixed: mixed * by_parent,
+        turn: symmetric(turn * by_parent),
+        force: beyond.force - mixed * free + force,
+        // Equal to `spring * inverse * (torque + own) - own`, without the difference of two large numbers.
+        torque: by_parent.transpose() * torque - turn * (inverse * own),
+        pull: beyond.pull + force,
+    };
+    Eliminated { free, by_parent, by_place }
+}
+
+/// The matrix of `v x`.
+fn cross_matrix(v: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
+}
+
+fn symmetric(m: DMat3) -> DMat3 {
+    (m + m.transpose()) * 0.5
+}

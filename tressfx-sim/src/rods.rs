@@ -1,0 +1,75 @@
+//! The rods of a section at rest.
+
+use glam::{DVec3, Vec4};
+use tressfx_core::strands::Strands;
+
+use crate::params::SimParams;
+use crate::reference::direct::{RodRest, RodStep};
+use crate::step::bending;
+
+/// How the strands of a section stand in the pose of their file under gravity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// Guides whose bending length was raised, so that their pose is a stable equilibrium.
+    pub raised: u32,
+    /// The largest factor by which one was raised; 1 where none was.
+    pub largest_factor: f32,
+    /// Guides that do not stand at any stiffness that was tried; they sag.
+    pub fallen: u32,
+}
+
+/// The rods of a section at rest, as the kernel takes them.
+#[derive(Debug)]
+pub(crate) struct GpuRods {
+    /// `(2 * vertex + entry) * guides + guide`: half of the rotation that the joint before the edge wants, and the edge's frame at
+    /// rest. The tip has no edge; it has what the strand's bending is multiplied by, how many edges the root holds, the shortest
+    /// length that bends, and 1 if the tip is pinned.
+    pub(crate) entries: Vec<Vec4>,
+    pub(crate) standing: Standing,
+}
+
+impl GpuRods {
+    pub(crate) fn new(strands: &Strands, params: &SimParams) -> Self {
+        let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
+        let mut entries = vec![Vec4::ZERO; 2 * guides * vertices];
+        let mut standing = Standing { largest_factor: 1.0, ..Standing::default() };
+        for guide in 0..guides {
+            let (rest, stands) = rod_rest(strands, params, guide);
+            let factor = rest.stiffening.cbrt() as f32;
+            standing.raised += u32::from(stands && factor > 1.0);
+            standing.fallen += u32::from(!stands);
+            standing.largest_factor = standing.largest_factor.max(factor);
+            let mut set = |vertex: usize, entry: usize, value: Vec4| {
+                entries[(2 * vertex + entry) * guides + guide] = value;
+            };
+            for edge in 0..vertices - 1 {
+                set(edge, 0, rest.joints[edge].as_quat().into());
+                set(edge, 1, rest.frames[edge].as_quat().into());
+            }
+            let pinned = rest.held + 1 < vertices && strands.rest[(guide + 1) * vertices - 1].w == 0.0;
+            let shortest = rest.spans.iter().copied().fold(f64::INFINITY, f64::min);
+            let pinned = if pinned { 1.0 } else { 0.0 };
+            set(vertices - 1, 0, Vec4::new(rest.stiffening as f32, rest.held as f32, shortest as f32, pinned));
+        }
+        Self { entries, standing }
+    }
+}
+
+/// A guide's rod at rest, in the unit of the file, and whether it stands.
+pub(crate) fn rod_rest(strands: &Strands, params: &SimParams, guide: usize) -> (RodRest, bool) {
+    let vertices = strands.vertices as usize;
+    let points = &strands.rest[guide * vertices..(guide + 1) * vertices];
+    let held = points.iter().take_while(|point| point.w == 0.0).count().saturating_sub(1);
+    let places: Vec<DVec3> = points.iter().map(|point| point.truncate().as_dvec3()).collect();
+    let mut rest = RodRest::new(&places, held);
+    let metres = f64::from(strands.metres_per_unit);
+    let step = RodStep {
+        gravity: params.gravity.as_dvec3() / metres,
+        bending: bending(params, strands.metres_per_unit),
+        twist_ratio: params.twist_ratio.into(),
+        ..RodStep::default()
+    };
+    let wanted = rest.clone();
+    let stands = rest.stand(&step, params.sag_free.into());
+    if stands { (rest, true) } else { (wanted, false) }
+}
