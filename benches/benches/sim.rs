@@ -7,14 +7,16 @@
 //! Times are from the GPU's timestamps, the median and the least; frames of all settings take turns. The tips are compared
 //! with those at a sub-step of 1/960 s: that is no limit where curls are so stiff that they tremble at small sub-steps
 //! (`ClockParams::sub_step`).
+//!
+//! The bench `passes` times the passes at the default setting with criterion; this one compares settings. With `--test` it does as
+//! little as shows that it runs.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use glam::{Quat, Vec3, Vec4};
-use tressfx_asset::builtin::Builtin;
 use tressfx_backend_wgpu::WgpuBackend;
-use tressfx_core::asset::HairAsset;
+use tressfx_benches::{Failure, asset};
 use tressfx_core::backend::{Backend, Run as _};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -26,8 +28,6 @@ const FRAMES: u32 = 6;
 /// A GPU takes its time to raise its clocks.
 const WARM_UP: Duration = Duration::from_secs(1);
 
-type Failure = Box<dyn std::error::Error>;
-
 /// Sub-steps a second, and iterations of both constraints in each.
 type Setting = (u32, u32);
 
@@ -36,9 +36,13 @@ const EXACT: Setting = (960, 2);
 fn main() -> Result<(), Failure> {
     // Cargo adds `--bench`.
     let (options, mut grooms): (Vec<_>, Vec<_>) = std::env::args().skip(1).partition(|arg| arg.starts_with("--"));
+    let is_test = options.iter().any(|option| option == "--test");
     let frames = options.iter().find_map(|option| option.strip_prefix("--frames="));
-    let frames = frames.map_or(Ok(FRAMES), str::parse)?;
-    if grooms.is_empty() {
+    let frames = if is_test { 1 } else { frames.map_or(Ok(FRAMES), str::parse)? };
+    let warm_up = if is_test { Duration::ZERO } else { WARM_UP };
+    if is_test {
+        grooms = vec![String::from("builtin:long:64:16")];
+    } else if grooms.is_empty() {
         grooms = ["builtin:long:2048:32", "builtin:curly:1000"].map(String::from).to_vec();
         if let Some(assets) = std::env::var_os("TRESSFX_ASSETS") {
             let assets = std::path::PathBuf::from(assets);
@@ -48,18 +52,18 @@ fn main() -> Result<(), Failure> {
     let mut backend = WgpuBackend::headless()?;
     println!("{}", backend.caps().adapter);
     for groom in &grooms {
-        bench(&mut backend, groom, frames)?;
+        bench(&mut backend, groom, frames, warm_up)?;
     }
     Ok(())
 }
 
-fn bench(backend: &mut WgpuBackend, groom: &str, frames: u32) -> Result<(), Failure> {
+fn bench(backend: &mut WgpuBackend, groom: &str, frames: u32, time: Duration) -> Result<(), Failure> {
     let options = StrandOptions { follows: Some(0), ..StrandOptions::default() };
     let strands = Strands::new(&asset(groom)?, &options)?;
     println!("\n{groom}: {} strands of {} vertices", strands.strand_count(), strands.vertices);
     let settings = [60, 120, 240].into_iter().flat_map(|rate| [1, 2, 4].map(|iterations| (rate, iterations)));
     let mut runs = settings.map(|setting| Run::new(backend, &strands, setting)).collect::<Result<Vec<_>, _>>()?;
-    warm_up(backend, &strands)?;
+    warm_up(backend, &strands, time)?;
     for frame in 0..=frames {
         runs.iter_mut().try_for_each(|run| run.frame(backend, &strands, frame))?;
     }
@@ -74,17 +78,10 @@ fn bench(backend: &mut WgpuBackend, groom: &str, frames: u32) -> Result<(), Fail
     Ok(())
 }
 
-fn asset(name: &str) -> Result<HairAsset, Failure> {
-    match name.strip_prefix("builtin:") {
-        Some(builtin) => Ok(builtin.parse::<Builtin>()?.asset()),
-        None => Ok(tressfx_asset::read(name)?),
-    }
-}
-
-fn warm_up(backend: &mut WgpuBackend, strands: &Strands) -> Result<(), Failure> {
+fn warm_up(backend: &mut WgpuBackend, strands: &Strands, time: Duration) -> Result<(), Failure> {
     let mut run = Run::new(backend, strands, (60, 1))?;
     let start = Instant::now();
-    for frame in (0..).take_while(|_| start.elapsed() < WARM_UP) {
+    for frame in (0..).take_while(|_| start.elapsed() < time) {
         run.frame(backend, strands, frame)?;
     }
     run.finish(backend, strands).map(drop)
