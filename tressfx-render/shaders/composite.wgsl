@@ -1,17 +1,29 @@
 // The resolved hair lies over the picture: six vertices for each tile with hair, in the order in which they were found.
 
+import package::tile::{TILE, resolved_index};
 import package::view::ViewUniform;
 
-@group(0) @binding(0) var<uniform> view: ViewUniform;
-// Tiles with hair.
-@group(0) @binding(1) var<storage, read> tiles: array<u32>;
-@group(0) @binding(2) var<storage, read> resolved: array<vec2<u32>>;
+@if(hair_output)
+import package::fragment::seen_nearness;
 
-const TILE: u32 = 8u;
+@group(0) @binding(0) var<uniform> view: ViewUniform;
+// Tiles with hair, and where their pixels are.
+@group(0) @binding(1) var<storage, read> tiles: array<vec2<u32>>;
+@if(!hair_output)
+@group(0) @binding(2) var<storage, read> resolved: array<vec2<u32>>;
+// Three words a pixel: colour and alpha, and the key of the fragment whose depth the pixel has.
+@if(hair_output)
+@group(0) @binding(2) var<storage, read> resolved: array<u32>;
+
+struct Corner {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) slot: u32,
+}
 
 @vertex
-fn tile_corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
-    let tile = tiles[vertex / 6u];
+fn tile_corner(@builtin(vertex_index) vertex: u32) -> Corner {
+    let listed = tiles[vertex / 6u];
+    let tile = listed.x;
     let columns = (view.size.x + TILE - 1u) / TILE;
     // Two triangles with the corners 0 1 2 and 2 1 3, two bits each.
     let corner = (0xda4u >> (2u * (vertex % 6u))) & 3u;
@@ -19,12 +31,34 @@ fn tile_corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f3
     // Tiles at the edge end where the viewport does.
     let place = min(pixel, view.size) + view.offset;
     let clip = vec2<f32>(place) / vec2<f32>(view.target_size) * 2.0 - 1.0;
-    return vec4(clip.x, -clip.y, 0.0, 1.0);
+    return Corner(vec4(clip.x, -clip.y, 0.0, 1.0), listed.y);
 }
 
+@if(!hair_output)
 @fragment
-fn composite(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(position.xy) - view.offset;
-    let color = resolved[pixel.y * view.size.x + pixel.x];
+fn composite(corner: Corner) -> @location(0) vec4<f32> {
+    let pixel = vec2<u32>(corner.position.xy) - view.offset;
+    let color = resolved[resolved_index(corner.slot, pixel)];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
+}
+
+@if(hair_output)
+struct Targets {
+    @location(0) color: vec4<f32>,
+    // Depth and coverage.
+    @location(1) hair: vec4<f32>,
+}
+
+@if(hair_output)
+@fragment
+fn composite(corner: Corner) -> Targets {
+    let pixel = vec2<u32>(corner.position.xy) - view.offset;
+    let first = 3u * resolved_index(corner.slot, pixel);
+    let color = vec4(unpack2x16float(resolved[first]), unpack2x16float(resolved[first + 1u]));
+    // Without hair both targets keep what they have. The faintest hair may have a colour though its alpha is rounded to 0.
+    if all(color == vec4(0.0)) {
+        discard;
+    }
+    let depth = seen_nearness(resolved[first + 2u]) / view.lens.depth_scale + view.lens.depth_offset;
+    return Targets(color, vec4(depth, color.a, 0.0, 0.0));
 }

@@ -4,18 +4,19 @@
 //! does not grow with the density of hair. On a CPU tiles take several times as long, so that it stays with lists, which are
 //! bounded where there is no room for all. After a new size it begins with lists.
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::View;
 
 use crate::counters::Counters;
+use crate::output::Output;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::predict;
 use crate::renderer::Targets;
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, another_technique};
+use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::tiles::{Tiles, TilesDesc};
 use crate::views::BoundView;
 
@@ -90,6 +91,7 @@ impl From<AutoDesc> for Technique {
 struct Predicted {
     fragments: f64,
     references: f64,
+    tiles: u64,
     vertices: u64,
 }
 
@@ -98,7 +100,7 @@ struct Predicted {
 pub(crate) struct Auto {
     desc: AutoDesc,
     size: [u32; 2],
-    target: Format,
+    output: Output,
     lists: Ppll,
     /// Made when they first take over, and kept.
     tiles: Option<Tiles>,
@@ -116,12 +118,12 @@ pub(crate) struct Auto {
 }
 
 impl Auto {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &AutoDesc, size: [u32; 2], target: Format) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &AutoDesc, size: [u32; 2], output: Output) -> Result<Self> {
         Ok(Self {
             desc: *desc,
             size,
-            target,
-            lists: Ppll::new(backend, &desc.lists, size, target)?,
+            output,
+            lists: Ppll::new(backend, &desc.lists, size, output)?,
             tiles: None,
             uses_tiles: false,
             votes: 0,
@@ -164,14 +166,15 @@ impl Auto {
 
     /// Hands over, with room for what is predicted, so that nothing is dropped.
     fn switch(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        let Predicted { fragments, references, vertices } = self.predicted;
+        let Predicted { fragments, references, tiles, vertices } = self.predicted;
+        let wanted = Wanted { kept: references as u64, tiles };
         if self.uses_tiles {
-            self.lists.reserve(backend, fragments as u64, &[])?;
+            self.lists.reserve(backend, Wanted { kept: fragments as u64, tiles: 0 }, &[])?;
         } else if let Some(tiles) = &mut self.tiles {
-            tiles.reserve_counts(backend, references as u64, vertices)?;
+            tiles.reserve_counts(backend, wanted, vertices)?;
         } else {
-            let mut tiles = Tiles::new(backend, &self.desc.tiles, self.size, self.target)?;
-            tiles.reserve_counts(backend, references as u64, vertices)?;
+            let mut tiles = Tiles::new(backend, &self.desc.tiles, self.size, self.output)?;
+            tiles.reserve_counts(backend, wanted, vertices)?;
             self.tiles = Some(tiles);
         }
         self.uses_tiles = !self.uses_tiles;
@@ -191,7 +194,8 @@ impl Auto {
 
 impl TechniqueInstance for Auto {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        let memory = self.tiles.as_ref().map(|_| Tiles::memory(backend, &self.desc.tiles, size)).transpose()?;
+        let memory =
+            self.tiles.as_ref().map(|_| Tiles::memory(backend, &self.desc.tiles, size, self.output)).transpose()?;
         self.lists.resize(backend, size)?;
         if let (Some(tiles), Some(memory)) = (&mut self.tiles, memory) {
             tiles.replace_memory(backend, memory);
@@ -200,11 +204,11 @@ impl TechniqueInstance for Auto {
         Ok(())
     }
 
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
         self.active().predicted(view, draws)
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64, draws: &[SectionDraw]) -> Result<()> {
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()> {
         self.active_mut().reserve(backend, wanted, draws)
     }
 
@@ -268,9 +272,10 @@ impl TechniqueInstance for Auto {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         if self.frame % FRAMES == 1 {
-            let Predicted { fragments, references, .. } = &mut self.predicted;
+            let Predicted { fragments, references, tiles, .. } = &mut self.predicted;
             *fragments = fragments.max(predict::fragments(view.view, draws));
             *references = references.max(predict::references(view.view, draws));
+            *tiles = (*tiles).max(predict::tiles(view.view, draws));
         }
         self.active_mut().draw(list, view, targets, draws)
     }

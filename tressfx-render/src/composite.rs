@@ -1,12 +1,13 @@
 //! `hair.render.composite`: the resolved hair over the caller's picture.
 
-use tressfx_core::backend::{Backend, Blend, Format, RasterDesc};
+use tressfx_core::backend::{Backend, Blend, RasterDesc};
 use tressfx_core::error::Result;
-use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
-use tressfx_core::shader::{RasterPipeline, Specialization};
+use tressfx_core::shader::RasterPipeline;
 
 use crate::bound::Bound;
+use crate::output::{HAIR_FORMAT, Output};
+use crate::renderer::Targets;
 use crate::resolved::Resolved;
 use crate::shaders::{SHARED, shader};
 use crate::views::BoundView;
@@ -20,10 +21,14 @@ pub(crate) struct Composite {
 }
 
 impl Composite {
-    pub(crate) fn new(backend: &mut dyn Backend, target: Format) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, output: Output) -> Result<Self> {
         let root = ("composite", include_str!("../shaders/composite.wgsl"));
-        let shader = shader(LABEL, root, &SHARED, &Specialization::new())?;
-        let pipeline = backend.create_raster(&RasterDesc::new(shader).target(target, Blend::Over))?;
+        let shader = shader(LABEL, root, &SHARED, &output.specialization())?;
+        let mut desc = RasterDesc::new(shader).target(output.color, Blend::Over);
+        if output.hair {
+            desc = desc.target(HAIR_FORMAT, Blend::Replace);
+        }
+        let pipeline = backend.create_raster(&desc)?;
         Ok(Self { pipeline, bound: Bound::new() })
     }
 
@@ -32,7 +37,7 @@ impl Composite {
         list: &mut PassList,
         view: &BoundView,
         resolved: &Resolved,
-        target: TextureId,
+        targets: &Targets,
     ) -> Result<()> {
         let bindings = self.bound.get(view.index, || {
             self.pipeline.bind(&[
@@ -42,7 +47,11 @@ impl Composite {
             ])
         })?;
         let draw = Draw::indirect(&self.pipeline, &bindings, resolved.draw, 0);
-        list.raster(RasterPass::new(LABEL).color(target, Load::Keep).draw(draw));
+        let mut pass = RasterPass::new(LABEL).color(targets.color, Load::Keep);
+        if let Some(hair) = targets.hair {
+            pass = pass.color(hair, Load::Keep);
+        }
+        list.raster(pass.draw(draw));
         Ok(())
     }
 }

@@ -23,6 +23,8 @@ gpu_struct! {
         /// What the technique wanted to keep: the fragments where it has lists of them, the references to segments where it has
         /// tiles, else 0. Of lists that do not hold all fragments: those that they were to hold.
         pub wanted: u32,
+        /// Tiles of 8 x 8 pixels that have hair, or where it was looked for.
+        pub tiles_with_hair: u32,
         /// Fragments that were to be in order and found no room: they are in the picture, blended behind those that are in order.
         pub merged: u32,
     }
@@ -42,23 +44,25 @@ impl Counters {
     /// From the bytes of a read-back.
     ///
     /// # Panics
-    /// If there are not 24 bytes.
+    /// If there are not 28 bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }
 }
 
-/// [`Counters`] of each view of a frame.
+/// [`Counters`] of each view of a frame, and what is kept of it for the next frame.
 #[derive(Debug)]
 pub(crate) struct ViewCounters([BufferId; MAX_VIEWS]);
 
 impl ViewCounters {
-    /// Size of all of them on the GPU.
-    pub(crate) const BYTES: u64 = MAX_VIEWS as u64 * Counters::BYTES;
+    /// Size of all of them on the GPU, with so many bytes more in each.
+    pub(crate) const fn bytes(kept: u64) -> u64 {
+        MAX_VIEWS as u64 * (Counters::BYTES + kept)
+    }
 
-    pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, kept: u64) -> Result<Self> {
         let made: Result<Vec<_>> =
-            (0..MAX_VIEWS).map(|_| storage(backend, "hair.render.counters", Counters::BYTES)).collect();
+            (0..MAX_VIEWS).map(|_| storage(backend, "hair.render.counters", Counters::BYTES + kept)).collect();
         Ok(Self(made?.try_into().expect("as many as there are views")))
     }
 
@@ -70,6 +74,11 @@ impl ViewCounters {
     /// Sets those of the first views to zero.
     pub(crate) fn clear(&self, list: &mut PassList, views: usize) {
         self.0[..views].iter().for_each(|&counters| list.clear(counters, 0, Counters::BYTES));
+    }
+
+    /// Forgets what was kept: so many bytes of each.
+    pub(crate) fn forget(&self, list: &mut PassList, kept: u64) {
+        self.0.iter().for_each(|&counters| list.clear(counters, Counters::BYTES, kept));
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {

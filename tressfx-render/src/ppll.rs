@@ -7,7 +7,7 @@ mod pool;
 mod resolve;
 mod tail;
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::{Error, Label, Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
@@ -16,13 +16,14 @@ use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::counters::Counters;
+use crate::output::Output;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
-use crate::resolved::{Resolved, check_pixels, pixels};
+use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
+use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, check_k};
 use crate::usage::Usage;
 use crate::views::BoundView;
 use bounded::{Bounded, Prepared};
@@ -41,7 +42,7 @@ const LABEL: Label = "hair.render.ppll";
 const SPARE: f64 = 1.1;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<5, 18>([
+const LIBRARY: &[Module] = &with_shared::<5, 21>([
     PIXELS,
     ("kept", include_str!("../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../shaders/ppll/node.wgsl")),
@@ -117,8 +118,8 @@ impl PpllDesc {
         self.cap.unwrap_or(self.k).min(self.k)
     }
 
-    fn variant(&self, bounded: bool) -> Variant {
-        Variant { k: self.k, tail: self.tail, bounded }
+    fn variant(&self, bounded: bool, output: Output) -> Variant {
+        Variant { k: self.k, tail: self.tail, bounded, output }
     }
 }
 
@@ -141,7 +142,7 @@ impl From<PpllDesc> for crate::Technique {
 pub(crate) struct Ppll {
     desc: PpllDesc,
     size: [u32; 2],
-    target: Format,
+    output: Output,
     fill: Segments,
     resolve: Resolve,
     composite: Composite,
@@ -159,23 +160,29 @@ pub(crate) struct Ppll {
 }
 
 impl Ppll {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &PpllDesc, size: [u32; 2], target: Format) -> Result<Self> {
+    pub(crate) fn new(
+        backend: &mut dyn Backend,
+        desc: &PpllDesc,
+        size: [u32; 2],
+        output: impl Into<Output>,
+    ) -> Result<Self> {
+        let output = output.into();
         check_k(LABEL, desc.k, &K_RANGE)?;
-        check(backend, size)?;
+        check(backend, size, output)?;
         let mut made = Self {
             desc: *desc,
             size,
-            target,
-            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false), target)?,
-            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some()))?,
-            composite: Composite::new(backend, target)?,
+            output,
+            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false, output), output.color)?,
+            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), output))?,
+            composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc)?,
             bounded: Bounded::default(),
             kept: 0,
             unproven: None,
             views: 1,
             usage: Usage::new(),
-            resolved: Resolved::new(backend, size)?,
+            resolved: Resolved::new(backend, size, output)?,
         };
         if desc.cap.is_some() {
             let prepared = made.prepare(backend, desc)?;
@@ -186,13 +193,13 @@ impl Ppll {
 
     /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
     fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
-        let kernel = self.resolve.prepare(backend, desc.variant(true))?;
-        Ok((kernel, self.bounded.prepare(backend, self.size, desc.asked(), desc.fill, self.target)?))
+        let kernel = self.resolve.prepare(backend, desc.variant(true, self.output))?;
+        Ok((kernel, self.bounded.prepare(backend, self.size, desc.asked(), desc.fill, self.output)?))
     }
 
     /// Does so.
     fn bound(&mut self, backend: &mut dyn Backend, desc: &PpllDesc, (kernel, prepared): (Option<Kernel>, Prepared)) {
-        self.resolve.change(desc.variant(true), kernel);
+        self.resolve.change(desc.variant(true, self.output), kernel);
         self.bounded.turn_on(backend, prepared);
         self.kept = desc.asked();
         self.forget_bindings();
@@ -200,7 +207,7 @@ impl Ppll {
 
     /// Whether the device can bound lists by itself.
     fn can_bound(&self, backend: &dyn Backend) -> bool {
-        bounded::check(backend, self.size, self.desc.asked()).is_ok()
+        bounded::check(backend, self.size, self.desc.asked(), self.output).is_ok()
     }
 
     /// Makes room for what a view has needed. Where even the nearest have too little, fewer of a pixel are kept: which of them find
@@ -210,7 +217,7 @@ impl Ppll {
             return Ok(());
         }
         let was_bounded = self.bounded.is_on();
-        self.reserve(backend, counters.wanted.into(), &[])?;
+        self.reserve(backend, Wanted { kept: counters.wanted.into(), tiles: 0 }, &[])?;
         self.unproven = None;
         if was_bounded && counters.wanted > self.pool.largest {
             let fits = self.pool.largest / counters.pixels_with_hair.max(1);
@@ -225,11 +232,11 @@ impl Ppll {
         if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
             return Ok(false);
         }
-        let kernel = self.resolve.prepare(backend, self.desc.variant(false))?;
+        let kernel = self.resolve.prepare(backend, self.desc.variant(false, self.output))?;
         if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments))? {
             self.pool.replace(backend, nodes);
         }
-        self.resolve.change(self.desc.variant(false), kernel);
+        self.resolve.change(self.desc.variant(false, self.output), kernel);
         self.bounded.turn_off(backend);
         self.forget_bindings();
         Ok(true)
@@ -259,7 +266,7 @@ impl Ppll {
 
     /// Gives back all that was reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        let variant = self.desc.variant(self.desc.cap.is_some());
+        let variant = self.desc.variant(self.desc.cap.is_some(), self.output);
         let kernel = self.resolve.prepare(backend, variant)?;
         if let Some(nodes) = self.pool.prepare_smaller(backend, 0)? {
             self.pool.replace(backend, nodes);
@@ -288,11 +295,11 @@ impl Ppll {
 
 impl TechniqueInstance for Ppll {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        check(backend, size)?;
+        check(backend, size, self.output)?;
         let pool = NodePool::new(backend, size, &self.desc)?;
-        let resolved = Resolved::new(backend, size)?;
+        let resolved = Resolved::new(backend, size, self.output)?;
         let bounded = &self.bounded;
-        let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.target);
+        let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.output);
         if let Some(prepared) = bounded.is_on().then(prepare).transpose()? {
             self.bounded.turn_on(backend, prepared);
         }
@@ -303,12 +310,13 @@ impl TechniqueInstance for Ppll {
         Ok(())
     }
 
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
-        predict::fragments(view, draws)
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
+        Wanted { kept: predict::fragments(view, draws) as u64, tiles: 0 }
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64, _: &[SectionDraw]) -> Result<()> {
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, _: &[SectionDraw]) -> Result<()> {
         let desc = self.desc;
+        let fragments = wanted.kept;
         let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
         let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
         let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
@@ -354,8 +362,8 @@ impl TechniqueInstance for Ppll {
         let was_capped = self.desc.cap.is_some();
         let stays = self.bounded.is_on() && (desc.cap.is_some() || !was_capped);
         if stays && self.bounded.asked() == desc.asked() || !stays && desc.cap.is_none() {
-            let kernel = self.resolve.prepare(backend, desc.variant(stays))?;
-            self.resolve.change(desc.variant(stays), kernel);
+            let kernel = self.resolve.prepare(backend, desc.variant(stays, self.output))?;
+            self.resolve.change(desc.variant(stays, self.output), kernel);
             if !stays {
                 self.bounded.turn_off(backend);
             }
@@ -372,7 +380,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn bytes(&self) -> u64 {
-        self.pool.bytes(self.size) + self.bounded.bytes() + Resolved::bytes(self.size)
+        self.pool.bytes(self.size) + self.bounded.bytes() + self.resolved.bytes(self.size)
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
@@ -407,7 +415,7 @@ impl TechniqueInstance for Ppll {
             }
         }
         self.resolve.pass(list, view, &self.pool, &self.resolved, self.bounded.rest())?;
-        self.composite.pass(list, view, &self.resolved, targets.color)
+        self.composite.pass(list, view, &self.resolved, targets)
     }
 }
 
@@ -418,11 +426,11 @@ fn groups(draw: &SectionDraw) -> u64 {
 }
 
 /// Whether a device can draw hair on a screen of this size.
-fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
+fn check(backend: &dyn Backend, size: [u32; 2], output: Output) -> Result<()> {
     let needs = [
         Need::StorageBuffers(6),
         Need::TextureEdge(size[0].max(size[1])),
-        Need::StorageBindingBytes(Resolved::PIXEL_BYTES * pixels(size)),
+        Need::StorageBindingBytes(output.slot_bytes() * u64::from(tile_count(size))),
     ];
     backend.caps().check("hair.render", &needs)?;
     check_pixels(size)

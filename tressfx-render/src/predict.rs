@@ -1,13 +1,16 @@
 //! How many fragments a frame will have.
 
+use std::f32::consts::FRAC_PI_8;
+
 use glam::{Mat4, Vec2, Vec3};
 use tressfx_core::view::View;
 
-use crate::resolved::TILE;
+use crate::resolved::{TILE, tile_count};
 use crate::strands::SectionDraw;
 
-/// Slices of depth that a segment touches within a tile, in the mean: at most 1.7 of five grooms at three distances.
-const SLICES_OF_A_TILE: f64 = 1.75;
+/// Slices of depth that a segment touches within a tile, in the mean: at most 1.7 of five grooms at three distances, and a
+/// little for the tiles that turns reach into beyond their joints.
+const SLICES_OF_A_TILE: f64 = 1.78;
 
 /// Fragments that a view of sections makes, from the samples of their rest poses, what is hidden behind meshes included.
 pub(crate) fn fragments(view: &View, draws: &[SectionDraw]) -> f64 {
@@ -19,6 +22,46 @@ pub(crate) fn references(view: &View, draws: &[SectionDraw]) -> f64 {
     SLICES_OF_A_TILE * sum(view, draws, tiles_of)
 }
 
+/// How far hair swings out of the bounds of its rest pose, in parts of their size.
+const SWING: f32 = 0.15;
+
+/// Tiles that may have hair: those of a box on the screen around the samples of each section, made larger on all sides.
+pub(crate) fn tiles(view: &View, draws: &[SectionDraw]) -> u64 {
+    let all = u64::from(tile_count(view.size()));
+    let of_section = |draw: &SectionDraw| {
+        let to_eye = view.lens().to_eye * draw.pose.matrix();
+        let ends = draw.strands.info.sample.iter().flat_map(|(ends, _)| ends);
+        let mut bounds: Option<[Vec2; 2]> = None;
+        for end in ends.map(|&end| to_eye.transform_point3(end)).filter(|end| end.is_finite()) {
+            let Some(pixel) = on_screen(view, end) else { return all };
+            let [low, high] = bounds.unwrap_or([pixel; 2]);
+            bounds = Some([low.min(pixel), high.max(pixel)]);
+        }
+        bounds.map_or(0, |bounds| tiles_in(bounds, view.size()))
+    };
+    draws.iter().map(of_section).sum::<u64>().min(all)
+}
+
+/// The pixel of a point in the space of the eye; none where it is not beyond the near plane.
+fn on_screen(view: &View, end: Vec3) -> Option<Vec2> {
+    let lens = view.lens();
+    let scale = if lens.is_perspective { -1.0 / end.z } else { 1.0 };
+    let moved = Vec2::new(lens.focal.x * end.x, -(lens.skew * end.x + lens.focal.y * end.y));
+    (-end.z >= lens.near).then(|| lens.center + moved * scale)
+}
+
+/// The tiles of a box of pixels that is made larger by [`SWING`].
+fn tiles_in([low, high]: [Vec2; 2], size: [u32; 2]) -> u64 {
+    let last = Vec2::new(size[0] as f32, size[1] as f32) - 1.0;
+    let margin = (high - low) * SWING + TILE as f32;
+    let (low, high) = ((low - margin).max(Vec2::ZERO), (high + margin).min(last));
+    if low.cmpgt(high).any() {
+        return 0;
+    }
+    let [low, high] = [low, high].map(|corner| (corner / TILE as f32).as_u64vec2());
+    (high - low + 1).element_product()
+}
+
 /// The sum of something over the segments of all sections that are before the eye, from their samples.
 fn sum(view: &View, draws: &[SectionDraw], of: impl Fn(&Strip) -> f32) -> f64 {
     let of_section = |draw: &SectionDraw| {
@@ -26,7 +69,10 @@ fn sum(view: &View, draws: &[SectionDraw], of: impl Fn(&Strip) -> f32) -> f64 {
         let to_eye = view.lens().to_eye * draw.pose.matrix();
         let radius = info.radius(draw.material);
         let width = |share: f32| radius * (draw.material.tip_width + (1.0 - draw.material.tip_width) * share);
-        let strips = info.sample.iter().filter_map(|(ends, shares)| Strip::new(view, to_eye, *ends, shares.map(width)));
+        // A root and a tip a strand.
+        let ends = 2.0 / (draw.strands.buffers.shape.vertices - 1).max(1) as f32;
+        let strip = |(at, shares): &([Vec3; 2], [f32; 2])| Strip::new(view, to_eye, *at, shares.map(width));
+        let strips = info.sample.iter().filter_map(strip).map(|strip| Strip { ends, ..strip });
         let sum: f64 = strips.map(|strip| f64::from(of(&strip))).sum();
         sum * f64::from(draw.strands.buffers.shape.segments()) / info.sample.len() as f64
     };
@@ -37,6 +83,8 @@ fn sum(view: &View, draws: &[SectionDraw], of: impl Fn(&Strip) -> f32) -> f64 {
 struct Strip {
     delta: Vec2,
     width: f32,
+    /// How many of its ends are round, in the mean.
+    ends: f32,
 }
 
 impl Strip {
@@ -58,7 +106,7 @@ impl Strip {
         let visible = part_within(a, b, half)?;
         let focal = (lens.focal.x * lens.focal.y).sqrt();
         let width = radii.iter().zip(scales).map(|(radius, scale)| radius * focal * scale).sum();
-        Some(Self { delta: (b - a) * visible, width })
+        Some(Self { delta: (b - a) * visible, width, ends: 0.0 })
     }
 }
 
@@ -72,9 +120,10 @@ fn part_within(a: Vec2, b: Vec2, half: Vec2) -> Option<f32> {
 }
 
 /// The expected number of pixel centres within reach of a segment: its length on the screen times the width of the strip,
-/// which a pixel's own extent across the strand makes wider on both sides.
+/// which a pixel's own extent across the strand makes wider on both sides. A round end adds half a disc, made larger by half a pixel.
 fn fragments_of(strip: &Strip) -> f32 {
-    strip.delta.length() * strip.width + strip.delta.abs().element_sum()
+    let end = FRAC_PI_8 * (strip.width + 1.0) * (strip.width + 1.0);
+    strip.delta.length() * strip.width + strip.delta.abs().element_sum() + strip.ends * end
 }
 
 /// The expected number of tiles with a pixel centre within reach of a segment, wherever it lies on the screen: the area of the
@@ -86,6 +135,10 @@ fn tiles_of(strip: &Strip) -> f32 {
     let length = strip.delta.length().max(1e-6);
     // Across the strand the strip reaches as far as half its width and half a pixel's own extent.
     let reach = 0.5 * (strip.width + (long + short) / length);
+    // At round ends as far along it.
+    let long = long + strip.ends * reach * long / length;
+    let short = short + strip.ends * reach * short / length;
+    let length = length + strip.ends * reach;
     let columns = long + 2.0 * reach * short / length;
     let height = 2.0 * reach * length / long.max(1e-6);
     let rows = columns * short / long.max(1e-6) + height;

@@ -3,11 +3,14 @@
 //! Functions have the names of the kernels and take the view and the contents of the buffers, in their order. Nothing is rounded to half floats or to integers, except that a fragment too faint for the 16
 //! bits of its alpha does not exist here either.
 
+mod coverage;
 mod fill;
 mod image;
+mod joint;
 mod nearest;
 mod projection;
 mod resolve;
+mod ribbon;
 mod shade;
 mod shortcut_colors;
 mod shortcut_depths;
@@ -17,10 +20,11 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::uniforms::SectionUniform;
 
-pub use fill::{Fragment, coverage, fill};
-pub use image::{exact, resolved, resolved_with_tail, shortcut, supersampled};
+pub use coverage::coverage;
+pub use fill::{Fragment, fill};
+pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};
 pub use nearest::nearest;
-pub use resolve::{resolve, resolve_with_tail};
+pub use resolve::{resolve, resolve_at_places, resolve_with_tail};
 pub use shade::shade;
 pub use shortcut_colors::shortcut_colors;
 pub use shortcut_depths::{LayerPlace, Layers, shortcut_depths};
@@ -44,6 +48,28 @@ pub struct Strands<'a> {
 impl Strands<'_> {
     fn index(&self, strand: u32, vertex: u32) -> usize {
         (vertex * self.uniform.strands + strand) as usize
+    }
+
+    /// Whether anything is drawn from a vertex.
+    fn is_sound(&self, strand: u32, vertex: u32) -> bool {
+        self.positions[self.index(strand, vertex)][..3].iter().all(|x| x.abs() < 1e12)
+    }
+
+    /// The vertex from which a segment leads to this one.
+    fn before(&self, strand: u32, vertex: u32) -> Option<u32> {
+        vertex.checked_sub(1).filter(|&before| self.is_sound(strand, before))
+    }
+
+    /// The vertex to which a segment leads from this one.
+    fn after(&self, strand: u32, vertex: u32) -> Option<u32> {
+        Some(vertex + 1).filter(|&after| after < self.uniform.vertices && self.is_sound(strand, after))
+    }
+
+    /// Radius of the fibre at a vertex.
+    fn radius(&self, strand: u32, vertex: u32) -> f64 {
+        let share = f64::from(self.thickness[(vertex * self.uniform.guides + strand % self.uniform.guides) as usize]);
+        let tip = f64::from(self.uniform.tip_width);
+        f64::from(self.uniform.fibre_radius) * (tip + (1.0 - tip) * share)
     }
 
     /// The position of a vertex in the world: transformed by the pose of the section.

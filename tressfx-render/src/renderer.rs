@@ -8,6 +8,7 @@ use tressfx_core::view::{PoseError, View};
 
 use crate::counters::Counters;
 use crate::lights::MAX_LIGHTS;
+use crate::output::Output;
 use crate::shade::Shade;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance};
@@ -31,18 +32,30 @@ pub struct RenderDesc {
     pub target: Format,
     /// How fragments of hair behind each other are sorted and blended.
     pub technique: Technique,
+    /// Whether depth and coverage of the hair are written too: see [`Targets::hair`].
+    pub hair_output: bool,
 }
 
 impl RenderDesc {
     /// The default technique: lists of fragments for each pixel.
     pub fn new(size: [u32; 2], target: Format) -> Self {
-        Self { size, target, technique: Technique::default() }
+        Self { size, target, technique: Technique::default(), hair_output: false }
     }
 
     /// The same with another technique.
     #[must_use]
     pub fn technique(self, technique: impl Into<Technique>) -> Self {
         Self { technique: technique.into(), ..self }
+    }
+
+    /// The same with or without depth and coverage of the hair, which take 4 more bytes a pixel, and 4 more where lists are bounded.
+    #[must_use]
+    pub fn hair_output(self, hair_output: bool) -> Self {
+        Self { hair_output, ..self }
+    }
+
+    fn output(&self) -> Output {
+        Output { color: self.target, hair: self.hair_output }
     }
 }
 
@@ -55,12 +68,25 @@ pub struct Targets {
     /// Depth of the opaque scene, [`Format::Depth32F`], in the order of the view. Hair is tested against it and does not
     /// write it.
     pub depth: TextureId,
+    /// Depth and coverage of the hair, [`HAIR_FORMAT`](crate::HAIR_FORMAT), of the same size; where
+    /// [`RenderDesc::hair_output`] is set, and only there.
+    ///
+    /// Red is depth as the opaque scene has it, in the order of the view: that of the nearest fragment of the pixel with an alpha
+    /// of at least 0.02, or of the nearest one where all are fainter. Green is `1 - transmittance`, the alpha with which hair is blended
+    /// over the picture. Pixels without hair keep what they have, so the caller clears them.
+    pub hair: Option<TextureId>,
 }
 
 impl Targets {
     /// Two textures of one size.
     pub fn new(color: TextureId, depth: TextureId) -> Self {
-        Self { color, depth }
+        Self { color, depth, hair: None }
+    }
+
+    /// The same with a texture for depth and coverage of the hair.
+    #[must_use]
+    pub fn hair(self, hair: TextureId) -> Self {
+        Self { hair: Some(hair), ..self }
     }
 }
 
@@ -82,6 +108,16 @@ pub enum DrawError {
         /// The renderer's.
         renderer: [u32; 2],
     },
+    /// A view names no texture for depth and coverage of the hair.
+    #[error(
+        "hair.render: the renderer was made to write depth and coverage of hair (`hair_output`), a view has no target for them"
+    )]
+    NoHairTarget,
+    /// A view names a texture for depth and coverage of the hair that the renderer does not write.
+    #[error(
+        "hair.render: a view has a target for depth and coverage of hair, the renderer was made without `hair_output`"
+    )]
+    UnusedHairTarget,
     /// The pose of a section is not valid.
     #[error("hair.render: {0}")]
     Pose(#[from] PoseError),
@@ -111,7 +147,7 @@ impl HairRenderer {
     /// A `k` that the technique does not take, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
         let ((order, views, shade), owner) = Owner::build(backend, |backend| {
-            let order = desc.technique.make(backend, desc.size, desc.target)?;
+            let order = desc.technique.make(backend, desc.size, desc.output())?;
             Ok::<_, Error>((order, Views::new(backend)?, Shade::new(backend)?))
         })?;
         Ok(Self { desc: *desc, views, shade, order, owner })
@@ -172,7 +208,7 @@ impl HairRenderer {
             return Ok(());
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
-        let wanted = self.order.predicted(view, &draws) as u64;
+        let wanted = self.order.predicted(view, &draws);
         self.owner.change(backend, |backend| self.order.reserve(backend, wanted, &draws))
     }
 
@@ -230,6 +266,11 @@ impl HairRenderer {
             if draw.lights.lights.len() > MAX_LIGHTS {
                 return Err(DrawError::Lights(draw.lights.lights.len()));
             }
+            match (self.desc.hair_output, draw.targets.hair) {
+                (true, None) => return Err(DrawError::NoHairTarget),
+                (false, Some(_)) => return Err(DrawError::UnusedHairTarget),
+                _ => (),
+            }
             let (view, renderer) = (draw.view.size(), self.desc.size);
             if !draw.view.is_empty() && (view[0] > renderer[0] || view[1] > renderer[1]) {
                 return Err(DrawError::Size { view, renderer });
@@ -262,6 +303,7 @@ mod tests {
     use crate::ppll::{K_RANGE, Ppll, PpllDesc};
     use crate::segments::Fill;
     use crate::shortcut::{ShortCut, ShortCutDesc};
+    use crate::technique::Wanted;
     use crate::tiles::{Tiles, TilesDesc, TilesUniform};
     use crate::uniforms::{LensUniform, LightUniform, SectionUniform, ViewUniform};
 
@@ -297,14 +339,14 @@ mod tests {
             shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
         }
         let tiles = tiles(&mut backend);
-        let [points, depth, bin, alloc, blend] = tiles.shaders();
-        for shader in [points, depth, bin, alloc, blend] {
+        let [points, depth, bin, alloc, blend, reopen] = tiles.shaders();
+        for shader in [points, depth, bin, alloc, blend, reopen] {
             shader.check_layout::<ViewUniform>().unwrap();
             shader.check_layout::<LensUniform>().unwrap();
         }
         points.check_layout::<SectionUniform>().unwrap();
         blend.check_layout::<Counters>().unwrap();
-        for shader in [bin, blend] {
+        for shader in [depth, bin, alloc, blend, reopen] {
             shader.check_layout::<TilesUniform>().unwrap();
         }
     }
@@ -326,7 +368,7 @@ mod tests {
             assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
         }
         let counts = tiles(&mut backend).shaders().map(|shader| shader.storage_buffers());
-        assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
+        assert_eq!(counts.into_iter().max(), Some(8), "{counts:?}: what `check` asks for");
         let lists = PpllDesc::default().fill(Fill::Raster);
         let lists = Ppll::new(&mut backend, &lists, [64, 64], Format::Rgba8Srgb).unwrap();
         let layers = ShortCutDesc::default().fill(Fill::Raster);
@@ -334,6 +376,26 @@ mod tests {
         for shader in lists.shaders().into_iter().chain(layers.shaders()) {
             assert!(shader.storage_buffers() <= 7, "{shader:?}");
             assert_eq!(shader.writes_in_fragments(), shader.label.ends_with("_raster"), "{shader:?}");
+        }
+    }
+
+    #[test]
+    fn depth_of_hair_takes_no_storage_buffer_of_its_own() {
+        let layers = ShortCutDesc::default();
+        let techniques: [Technique; 5] = [
+            PpllDesc::default().into(),
+            PpllDesc::default().cap(8).into(),
+            layers.into(),
+            layers.ordered(true).into(),
+            TilesDesc::default().into(),
+        ];
+        for technique in techniques {
+            let [without, with] = [false, true].map(|hair| {
+                let mut backend = NullBackend::default();
+                technique.make(&mut backend, [64, 64], Output { color: Format::Rgba16F, hair }).unwrap();
+                backend.shaders.iter().map(|shader| (shader.label, shader.storage_buffers())).collect::<Vec<_>>()
+            });
+            assert_eq!(with, without, "{technique:?}");
         }
     }
 
@@ -354,23 +416,25 @@ mod tests {
 
     #[test]
     fn a_technique_knows_what_it_takes() {
-        let techniques: [Technique; 3] = [
+        let techniques: [Technique; 4] = [
             PpllDesc::default().into(),
+            PpllDesc::default().cap(5).into(),
             ShortCutDesc::default().into(),
             ShortCutDesc::default().ordered(true).k(8).into(),
         ];
         for technique in techniques {
-            for size in [[96, 64], [1, 1], [0, 7]] {
+            for (size, hair) in [[96, 64], [1, 1], [0, 7]].into_iter().flat_map(|size| [(size, false), (size, true)]) {
+                let output = Output { color: Format::Rgba16F, hair };
                 let mut backend = NullBackend::default();
-                let made = technique.make(&mut backend, size, Format::Rgba16F).unwrap();
+                let made = technique.make(&mut backend, size, output).unwrap();
                 assert_eq!(made.bytes(), backend.memory().bytes, "{technique:?} at {size:?}");
             }
         }
         let mut backend = NullBackend::default();
         let mut pool = Ppll::new(&mut backend, &PpllDesc::default(), [96, 64], Format::Rgba16F).unwrap();
-        pool.reserve(&mut backend, 100_000, &[]).unwrap();
+        pool.reserve(&mut backend, Wanted { kept: 100_000, tiles: 0 }, &[]).unwrap();
         pool.resize(&mut backend, [33, 20]).unwrap();
-        pool.reserve(&mut backend, 50_000, &[]).unwrap();
+        pool.reserve(&mut backend, Wanted { kept: 50_000, tiles: 0 }, &[]).unwrap();
         assert_eq!(pool.bytes(), backend.memory().bytes);
     }
 }

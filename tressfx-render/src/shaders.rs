@@ -14,19 +14,22 @@ pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wg
 
 /// What all kernels may import. `walk` asks for a module `sink`, which is the technique's; so does `quad`, which
 /// imports from it.
-pub(crate) const SHARED: [Module; 13] = [
+pub(crate) const SHARED: [Module; 16] = [
     VIEW_MODULE,
     ("counters", include_str!("../shaders/shared/counters.wgsl")),
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
     ("fragment", include_str!("../shaders/shared/fragment.wgsl")),
+    ("joint", include_str!("../shaders/shared/joint.wgsl")),
     ("lighting", include_str!("../shaders/shared/lighting.wgsl")),
     ("line", include_str!("../shaders/shared/line.wgsl")),
+    ("places", include_str!("../shaders/shared/places.wgsl")),
     ("quad", include_str!("../shaders/shared/quad.wgsl")),
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
     ("screen", include_str!("../shaders/shared/screen.wgsl")),
     ("section", include_str!("../shaders/shared/section.wgsl")),
     ("strands", include_str!("../shaders/shared/strands.wgsl")),
     ("sums", include_str!("../shaders/shared/sums.wgsl")),
+    ("tile", include_str!("../shaders/shared/tile.wgsl")),
     ("walk", include_str!("../shaders/shared/walk.wgsl")),
 ];
 
@@ -52,7 +55,11 @@ pub(crate) fn shader(
     library: &'static [Module],
     specialization: &Specialization,
 ) -> Result<Arc<Shader>> {
-    Shader::new(&ShaderSource { label, root, library }, specialization).map(Arc::new)
+    // A fragment has one opacity unless a technique asks for more.
+    let is_decided = specialization.features().iter().any(|(name, _)| *name == "places");
+    let one_place = || specialization.clone().feature("places", false);
+    let specialization = if is_decided { specialization.clone() } else { one_place() };
+    Shader::new(&ShaderSource { label, root, library }, &specialization).map(Arc::new)
 }
 
 /// Compiles a compute kernel of this crate.

@@ -13,7 +13,7 @@ mod resolve;
 
 use std::ops::RangeInclusive;
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
@@ -22,11 +22,12 @@ use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::counters::Counters;
+use crate::output::Output;
 use crate::renderer::Targets;
-use crate::resolved::{check_pixels, pixels};
+use crate::resolved::{check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
+use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, check_k};
 use crate::views::BoundView;
 use memory::Memory;
 
@@ -65,8 +66,8 @@ impl ShortCutDesc {
         Self { fill, ..self }
     }
 
-    fn specialization(&self) -> Specialization {
-        Specialization::new().feature("ordered", self.ordered).constant("K", self.k)
+    fn specialization(&self, output: Output) -> Specialization {
+        output.specialization().feature("ordered", self.ordered).constant("K", self.k)
     }
 }
 
@@ -87,6 +88,7 @@ impl From<ShortCutDesc> for crate::Technique {
 #[derive(Debug)]
 pub(crate) struct ShortCut {
     desc: ShortCutDesc,
+    output: Output,
     depths: Segments,
     colors: Segments,
     resolve: resolve::Resolve,
@@ -95,17 +97,24 @@ pub(crate) struct ShortCut {
 }
 
 impl ShortCut {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShortCutDesc, size: [u32; 2], target: Format) -> Result<Self> {
+    pub(crate) fn new(
+        backend: &mut dyn Backend,
+        desc: &ShortCutDesc,
+        size: [u32; 2],
+        output: impl Into<Output>,
+    ) -> Result<Self> {
+        let output = output.into();
         check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
-        check(backend, desc, size)?;
+        check(backend, desc, size, output)?;
         let k = Specialization::new().constant("K", desc.k);
         Ok(Self {
             desc: *desc,
-            depths: Segments::new(backend, desc.fill, &depths::SHADERS, &k, target)?,
-            colors: Segments::new(backend, desc.fill, &colors::SHADERS, &desc.specialization(), target)?,
-            resolve: resolve::Resolve::new(backend, desc)?,
-            composite: Composite::new(backend, target)?,
-            memory: Memory::new(backend, size, desc)?,
+            output,
+            depths: Segments::new(backend, desc.fill, &depths::SHADERS, &k, output.color)?,
+            colors: Segments::new(backend, desc.fill, &colors::SHADERS, &desc.specialization(output), output.color)?,
+            resolve: resolve::Resolve::new(backend, desc, output)?,
+            composite: Composite::new(backend, output)?,
+            memory: Memory::new(backend, size, desc, output)?,
         })
     }
 
@@ -118,8 +127,8 @@ impl ShortCut {
 
 impl TechniqueInstance for ShortCut {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        check(backend, &self.desc, size)?;
-        let memory = Memory::new(backend, size, &self.desc)?;
+        check(backend, &self.desc, size, self.output)?;
+        let memory = Memory::new(backend, size, &self.desc, self.output)?;
         std::mem::replace(&mut self.memory, memory).destroy(backend);
         self.depths.forget_bindings();
         self.colors.forget_bindings();
@@ -129,11 +138,11 @@ impl TechniqueInstance for ShortCut {
     }
 
     /// There is no pool.
-    fn predicted(&self, _: &View, _: &[SectionDraw]) -> f64 {
-        0.0
+    fn predicted(&self, _: &View, _: &[SectionDraw]) -> Wanted {
+        Wanted::default()
     }
 
-    fn reserve(&mut self, _: &mut dyn Backend, _: u64, _: &[SectionDraw]) -> Result<()> {
+    fn reserve(&mut self, _: &mut dyn Backend, _: Wanted, _: &[SectionDraw]) -> Result<()> {
         Ok(())
     }
 
@@ -170,13 +179,14 @@ impl TechniqueInstance for ShortCut {
         self.depths.passes(list, view, draws, targets, &self.memory.of_depths(view))?;
         self.colors.passes(list, view, draws, targets, &self.memory.of_colors(&self.desc))?;
         self.resolve.pass(list, view, &self.memory)?;
-        self.composite.pass(list, view, &self.memory.resolved, targets.color)
+        self.composite.pass(list, view, &self.memory.resolved, targets)
     }
 }
 
 /// Whether a device can draw hair on a screen of this size.
-fn check(backend: &dyn Backend, desc: &ShortCutDesc, size: [u32; 2]) -> Result<()> {
+fn check(backend: &dyn Backend, desc: &ShortCutDesc, size: [u32; 2], output: Output) -> Result<()> {
     let largest = memory::bytes_of_pixel(desc).into_iter().max().unwrap_or(0) * pixels(size);
+    let largest = largest.max(output.slot_bytes() * u64::from(tile_count(size)));
     let needs = [Need::StorageBuffers(7), Need::TextureEdge(size[0].max(size[1])), Need::StorageBindingBytes(largest)];
     backend.caps().check("hair.render", &needs)?;
     check_pixels(size)

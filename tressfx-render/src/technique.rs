@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 use std::ops::RangeInclusive;
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
@@ -11,6 +11,7 @@ use tressfx_core::view::View;
 
 use crate::auto::{Auto, AutoDesc};
 use crate::counters::Counters;
+use crate::output::Output;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
 use crate::shortcut::{ShortCut, ShortCutDesc};
@@ -38,6 +39,15 @@ impl Default for Technique {
     }
 }
 
+/// What a frame needs room for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Wanted {
+    /// Fragments, or references to segments.
+    pub(crate) kept: u64,
+    /// Tiles with hair, where only they have room for their pixels.
+    pub(crate) tiles: u64,
+}
+
 /// An instance of a technique: it turns shaded strands into pixels of a view.
 ///
 /// The renderer has uploaded views and sections, and shades the strands for a view before it calls `draw`. It owns what is made.
@@ -45,12 +55,12 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// Makes the buffers whose size depends on that of the view again.
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()>;
 
-    /// What a view of sections is predicted to need room for: fragments, or references; 0 where there is no pool.
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64;
+    /// What a view of sections is predicted to need room for; nothing where there is no pool.
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted;
 
     /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit, and
     /// makes room for the vertices of sections, where the technique keeps any.
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: u64, draws: &[SectionDraw]) -> Result<()>;
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()>;
 
     /// Makes room for what a view has needed. Returns whether there is another room than before.
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool>;
@@ -103,13 +113,13 @@ impl Technique {
         &self,
         backend: &mut dyn Backend,
         size: [u32; 2],
-        target: Format,
+        output: Output,
     ) -> Result<Box<dyn TechniqueInstance>> {
         match self {
-            Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, target)?)),
-            Self::Tiles(desc) => Ok(Box::new(Tiles::new(backend, desc, size, target)?)),
-            Self::Auto(desc) => Ok(Box::new(Auto::new(backend, desc, size, target)?)),
-            Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, target)?)),
+            Self::Ppll(desc) => Ok(Box::new(Ppll::new(backend, desc, size, output)?)),
+            Self::Tiles(desc) => Ok(Box::new(Tiles::new(backend, desc, size, output)?)),
+            Self::Auto(desc) => Ok(Box::new(Auto::new(backend, desc, size, output)?)),
+            Self::ShortCut(desc) => Ok(Box::new(ShortCut::new(backend, desc, size, output)?)),
         }
     }
 }

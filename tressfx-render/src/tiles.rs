@@ -9,22 +9,23 @@ mod kernels;
 mod layout;
 mod memory;
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::{Error, Need, Result};
-use tressfx_core::id::BufferId;
-use tressfx_core::pass::PassList;
+use tressfx_core::id::{BufferId, TextureId};
+use tressfx_core::pass::{Groups, PassList};
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::counters::Counters;
+use crate::output::Output;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
 use crate::resolved::check_pixels;
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, another_technique};
+use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::usage::Usage;
 use crate::views::BoundView;
-use kernels::Kernels;
+use kernels::{Kernels, alloc_grid, bin_grid};
 use layout::Layout;
 use memory::Memory;
 
@@ -41,16 +42,37 @@ pub struct TilesDesc {
     pub max_reference_bytes: u64,
     /// Transmittance of a pixel below which nothing more is blended into it.
     pub closed_below: f32,
+    /// Whether segments are left out that were hidden by other hair in the frame before. A tile in which they are not hidden any more
+    /// is drawn again with all of them, so that the picture is the same. None: where hair is dense.
+    pub skips_hidden: Option<bool>,
+    /// Places in a pixel where light passes hair for itself, one of [`TilesDesc::PLACES`]. With one, what a strand covers of a pixel
+    /// hides that share of all that is behind it. With four, strands that run behind each other are seen beside each other.
+    pub places: u32,
 }
 
 impl TilesDesc {
     /// The largest [`TilesDesc::max_reference_bytes`].
     pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
 
+    /// What [`TilesDesc::places`] may be.
+    pub const PLACES: [u32; 2] = [1, 4];
+
+    /// The same with another number of places in a pixel.
+    #[must_use]
+    pub fn places(self, places: u32) -> Self {
+        Self { places, ..self }
+    }
+
     /// The same with room for at most so many bytes of references.
     #[must_use]
     pub fn max_reference_bytes(self, max_reference_bytes: u64) -> Self {
         Self { max_reference_bytes, ..self }
+    }
+
+    /// The same, always with or always without what was hidden in the frame before.
+    #[must_use]
+    pub fn skips_hidden(self, skips_hidden: impl Into<Option<bool>>) -> Self {
+        Self { skips_hidden: skips_hidden.into(), ..self }
     }
 
     /// The same with another end of what is seen.
@@ -63,7 +85,8 @@ impl TilesDesc {
 impl Default for TilesDesc {
     /// Room for 16.7 million references; a pixel is closed when less than 1/1024 passes.
     fn default() -> Self {
-        Self { max_reference_bytes: Self::MAX_REFERENCE_BYTES, closed_below: 1.0 / 1024.0 }
+        let (max_reference_bytes, closed_below) = (Self::MAX_REFERENCE_BYTES, 1.0 / 1024.0);
+        Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1 }
     }
 }
 
@@ -77,29 +100,51 @@ impl From<TilesDesc> for crate::Technique {
 #[derive(Debug)]
 pub(crate) struct Tiles {
     desc: TilesDesc,
+    output: Output,
     kernels: Kernels,
     composite: Composite,
     memory: Memory,
-    /// References and vertices.
-    usage: Usage<2>,
+    /// References, tiles and vertices.
+    usage: Usage<3>,
+    /// Whether hair was so dense that what it hides is left out.
+    is_dense: bool,
 }
 
+/// References of a pixel with hair, in the mean of a view, from which on hair is dense.
+const DENSE: f64 = 30.0;
+
+/// Below so many hair is dense no more, though nothing is referred to that is hidden.
+const LOOSE: f64 = 3.0;
+
 impl Tiles {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &TilesDesc, size: [u32; 2], target: Format) -> Result<Self> {
-        check(backend, size)?;
+    pub(crate) fn new(
+        backend: &mut dyn Backend,
+        desc: &TilesDesc,
+        size: [u32; 2],
+        output: impl Into<Output>,
+    ) -> Result<Self> {
+        let output = output.into();
+        check(backend, size, output)?;
+        if !TilesDesc::PLACES.contains(&desc.places) {
+            let message = format!("{} places in a pixel, there can be 1 or 4", desc.places);
+            return Err(Error::rule("hair.render.tiles", message));
+        }
         Ok(Self {
             desc: *desc,
-            kernels: Kernels::new(backend)?,
-            composite: Composite::new(backend, target)?,
-            memory: Memory::new(backend, size, desc)?,
+            output,
+            kernels: Kernels::new(backend, output, desc.places == 4)?,
+            composite: Composite::new(backend, output)?,
+            memory: Memory::new(backend, size, desc, output)?,
             usage: Usage::new(),
+            is_dense: false,
         })
     }
 
-    /// Makes room for so many references and some more, and for vertices.
-    pub(crate) fn reserve_counts(&mut self, backend: &mut dyn Backend, references: u64, vertices: u64) -> Result<()> {
-        self.usage.expect([references, vertices]);
-        let grown = self.memory.grow(backend, with_headroom(references), vertices);
+    /// Makes room for so many references and tiles and some more, and for vertices.
+    pub(crate) fn reserve_counts(&mut self, backend: &mut dyn Backend, wanted: Wanted, vertices: u64) -> Result<()> {
+        self.usage.expect([wanted.kept, wanted.tiles, vertices]);
+        let roomy = Wanted { kept: with_headroom(wanted.kept), tiles: with_headroom(wanted.tiles) };
+        let grown = self.memory.grow(backend, roomy, vertices);
         self.forget_bindings();
         grown
     }
@@ -107,15 +152,20 @@ impl Tiles {
     /// Gives back all that was reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
         self.usage = Usage::new();
-        let released = self.memory.shrink(backend, 0, 0);
+        let released = self.memory.shrink(backend, Wanted::default(), 0);
         self.forget_bindings();
         released
     }
 
     /// Memory for views of another size, with room for nothing yet.
-    pub(crate) fn memory(backend: &mut dyn Backend, desc: &TilesDesc, size: [u32; 2]) -> Result<Memory> {
-        check(backend, size)?;
-        Memory::new(backend, size, desc)
+    pub(crate) fn memory(
+        backend: &mut dyn Backend,
+        desc: &TilesDesc,
+        size: [u32; 2],
+        output: Output,
+    ) -> Result<Memory> {
+        check(backend, size, output)?;
+        Memory::new(backend, size, desc, output)
     }
 
     /// Uses other memory.
@@ -129,40 +179,69 @@ impl Tiles {
         self.composite.bound.clear();
     }
 
+    fn skips_hidden(&self) -> bool {
+        self.desc.skips_hidden.unwrap_or(self.is_dense)
+    }
+
+    /// Looks at how dense hair is. Where it has become dense, what is needed from now on is not what was.
+    fn note_density(&mut self, counters: &Counters) {
+        if self.desc.skips_hidden.is_some() {
+            return;
+        }
+        let density = f64::from(counters.wanted) / f64::from(counters.pixels_with_hair.max(1));
+        if !self.is_dense && density > DENSE {
+            (self.is_dense, self.usage) = (true, Usage::new());
+        }
+        self.is_dense &= density > LOOSE;
+    }
+
+    /// Binds all references and blends all tiles that wait, in rounds.
+    fn rounds(&mut self, list: &mut PassList, view: &BoundView, scene: TextureId) -> Result<()> {
+        let (kernels, memory) = (&mut self.kernels, &self.memory);
+        for round in 0..memory.references.rounds {
+            kernels.bin(list, view, memory, Some(round), memory.store_groups(round))?;
+            kernels.blend(list, view, memory, scene, round)?;
+        }
+        Ok(())
+    }
+
     #[cfg(test)]
-    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 5] {
+    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 6] {
         self.kernels.shaders()
     }
 }
 
 impl TechniqueInstance for Tiles {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        check(backend, size)?;
+        check(backend, size, self.output)?;
         self.memory.resize(backend, size)?;
         self.forget_bindings();
         Ok(())
     }
 
     /// No more than there is room for in one round: only what was measured asks for more rounds.
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> f64 {
-        predict::references(view, draws).min(self.memory.largest_round())
+    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
+        let references = predict::references(view, draws).min(self.memory.largest_round());
+        Wanted { kept: references as u64, tiles: predict::tiles(view, draws) }
     }
 
-    fn reserve(&mut self, backend: &mut dyn Backend, references: u64, draws: &[SectionDraw]) -> Result<()> {
-        self.reserve_counts(backend, references, layout::vertices(draws))
+    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()> {
+        self.reserve_counts(backend, wanted, layout::vertices(draws))
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        let before = self.capacity();
-        if counters.wanted > before {
-            self.reserve(backend, counters.wanted.into(), &[])?;
+        let before = (self.capacity(), self.memory.screen.resolved.slots);
+        if counters.wanted > before.0 || counters.tiles_with_hair > before.1 {
+            let wanted = Wanted { kept: counters.wanted.into(), tiles: counters.tiles_with_hair.into() };
+            self.reserve(backend, wanted, &[])?;
         }
-        let settled = self.usage.measured([counters.wanted.into(), 0]);
-        if self.capacity() > before {
+        self.note_density(counters);
+        let settled = self.usage.measured([counters.wanted.into(), counters.tiles_with_hair.into(), 0]);
+        if (self.capacity(), self.memory.screen.resolved.slots) != before {
             return Ok(true);
         }
-        if let Some([references, vertices]) = settled {
-            self.memory.shrink(backend, references, vertices)?;
+        if let Some([kept, tiles, vertices]) = settled {
+            self.memory.shrink(backend, Wanted { kept, tiles }, vertices)?;
             self.forget_bindings();
         }
         Ok(false)
@@ -172,6 +251,9 @@ impl TechniqueInstance for Tiles {
         let Technique::Tiles(desc) = technique else { return Err(another_technique("hair.render.tiles")) };
         if desc.max_reference_bytes != self.desc.max_reference_bytes {
             return Err(Error::rule("hair.render.tiles", "another limit of memory needs a new renderer".to_owned()));
+        }
+        if desc.places != self.desc.places {
+            return Err(Error::rule("hair.render.tiles", "other places in a pixel need a new renderer".to_owned()));
         }
         self.desc = *desc;
         Ok(())
@@ -204,37 +286,43 @@ impl TechniqueInstance for Tiles {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.usage.begin_frame();
-        self.usage.expect([0, layout::vertices(draws)]);
+        self.usage.expect([0, 0, layout::vertices(draws)]);
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
-        self.memory.counters.clear(list, views);
+        self.memory.begin(list, views);
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         let layout = Layout::new(draws)?;
-        let uniforms = layout.uniforms(view.view, draws, &self.desc, &self.memory.references);
+        let skips_hidden = self.skips_hidden();
+        let uniforms = layout.uniforms(view.view, draws, &self.desc, &self.memory, skips_hidden);
         self.memory.uniforms.upload(list, view.index * memory::UNIFORMS_OF_A_VIEW, &uniforms);
         self.memory.clear(list, view.size);
+        self.kernels.depth(list, view, &self.memory, targets.depth)?;
         for (draw, &first) in draws.iter().zip(&layout.first_vertices) {
             self.kernels.points(list, view, draw, &self.memory, first)?;
         }
-        self.kernels.depth(list, view, &self.memory, targets.depth)?;
-        self.kernels.bin(list, view, &self.memory, layout.segments, None)?;
-        self.kernels.alloc(list, view, &self.memory)?;
-        for round in 0..self.memory.references.rounds {
-            self.kernels.bin(list, view, &self.memory, layout.segments, Some(round))?;
-            self.kernels.blend(list, view, &self.memory, targets.depth, round)?;
+        self.kernels.bin(list, view, &self.memory, None, Groups::Grid(bin_grid(layout.segments)))?;
+        self.kernels.alloc(list, view, &self.memory, Groups::Grid(alloc_grid(view.size)))?;
+        self.rounds(list, view, targets.depth)?;
+        if skips_hidden {
+            self.memory.clear_queue(list);
+            self.kernels.reopen(list, view, &self.memory)?;
+            let [bin, alloc] = self.memory.groups_again();
+            self.kernels.bin(list, view, &self.memory, None, bin)?;
+            self.kernels.alloc(list, view, &self.memory, alloc)?;
+            self.rounds(list, view, targets.depth)?;
         }
-        self.composite.pass(list, view, &self.memory.screen.resolved, targets.color)
+        self.composite.pass(list, view, &self.memory.screen.resolved, targets)
     }
 }
 
 /// Whether a device can draw hair on a screen of this size.
-fn check(backend: &dyn Backend, size: [u32; 2]) -> Result<()> {
+fn check(backend: &dyn Backend, size: [u32; 2], output: Output) -> Result<()> {
     let needs = [
-        Need::StorageBuffers(7),
+        Need::StorageBuffers(8),
         Need::TextureEdge(size[0].max(size[1])),
-        Need::StorageBindingBytes(memory::largest_binding(size)),
+        Need::StorageBindingBytes(memory::largest_binding(size, output)),
     ];
     backend.caps().check("hair.render", &needs)?;
     check_pixels(size)

@@ -1,14 +1,14 @@
 // Strands become fragments in the lists of pixels, one thread a segment.
 
-import package::counters::Counters;
 import package::grid::{GROUP, thread_index};
 import package::line::Paint;
 import package::ribbon::Ribbon;
-import package::sink::{Sink, pool};
+import package::sink::{Sink, counters, pool};
 import package::strands::{paint_of, ribbon_of, section};
 import package::walk::walk;
 
-@group(0) @binding(9) var<storage, read_write> counters: Counters;
+@if(bounded)
+import package::sink::count_behind;
 
 // One request to the pool a group instead of one a fragment: everybody waits for that counter.
 var<workgroup> requested: atomic<u32>;
@@ -31,14 +31,6 @@ fn request(count: u32) -> u32 {
         old = exchange.old_value;
     }
     return old;
-}
-
-// Fragments that are not to have a node. What has overflowed once stays full.
-@if(bounded)
-fn count_behind(count: u32) {
-    if atomicAdd(&counters.merged, count) > 0xffffffffu - count {
-        atomicOr(&counters.merged, 0x80000000u);
-    }
 }
 
 @compute @workgroup_size(GROUP)

@@ -1,17 +1,14 @@
 // What `fill` does, with the raster units: every fragment asks the pool for a node itself.
 
-import package::counters::Counters;
 import package::fragment::Fragment;
 import package::quad::{Corner, corner_of, fragment_of, pixel_of};
 import package::screen::view;
-import package::sink::{link, pool};
+import package::sink::{counters, link, pool};
 
 @if(bounded)
 import package::rest::add_to_rest;
 @if(bounded)
-import package::sink::is_kept;
-
-@group(0) @binding(9) var<storage, read_write> counters: Counters;
+import package::sink::{count_behind, is_kept};
 
 @vertex
 fn segment_corner(@builtin(vertex_index) vertex: u32) -> Corner {
@@ -44,9 +41,8 @@ fn append(index: u32, fragment: Fragment) {
             link(index, node, fragment);
             return;
         }
-    } else if atomicAdd(&counters.merged, 1u) == 0xffffffffu {
-        // What has overflowed once stays full.
-        atomicOr(&counters.merged, 0x80000000u);
+    } else {
+        count_behind(1u);
     }
     add_to_rest(index, fragment);
 }

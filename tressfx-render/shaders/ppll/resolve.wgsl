@@ -8,10 +8,16 @@
 import package::constants::K;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
-import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
+import package::pixels::{count_hairy, counters, index_of, is_inside};
 import package::rest::{SUMS, UNIT};
 import package::sums::{FULL, optical_depth, transmittance_of};
 
+@if(hair_output)
+import package::fragment::{nearness_of, seen_key};
+@if(hair_output)
+import package::pixels::write_seen_pixel;
+@if(!hair_output)
+import package::pixels::write_pixel;
 @if(shaded)
 import package::sums::{mean_color, weighted};
 
@@ -106,6 +112,20 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     return over(&nearest, tail);
 }
 
+// The key of the nearest fragment of a pixel, whether or not it has a node.
+@if(hair_output)
+fn nearest_seen(index: u32, head: u32) -> u32 {
+    var seen = 0u;
+    @if(bounded) { seen = rest[SUMS * index + 5u]; }
+    var next = head;
+    while next != NOTHING {
+        let node = nodes[next - 1u];
+        next = node.w;
+        seen = max(seen, seen_key(nearness_of(node.x), packed_alpha(node.yz)));
+    }
+    return seen;
+}
+
 // What the whole view has left: one thread comes here.
 fn count_fragments() {
     let wanted = atomicLoad(&counters.fragments);
@@ -142,6 +162,7 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
         if has_hair {
             color = resolve_list(head, behind);
         }
-        write_pixel(index, color);
+        @if(!hair_output) { write_pixel(pixel.xy, color); }
+        @if(hair_output) { write_seen_pixel(pixel.xy, color, nearest_seen(index, head)); }
     }
 }

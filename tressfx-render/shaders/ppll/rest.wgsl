@@ -1,10 +1,16 @@
 // What the fragments of a pixel leave that have no node: the sums that a tail is made of.
 
 import package::fragment::{Fragment, pack_color, packed_color};
+@if(hair_output)
+import package::fragment::seen_key;
 import package::sums::{optical_depth, weighted};
 
 // Sums of a pixel: of optical depths, of alphas, and of red, green and blue, weighted by alpha.
+@if(!hair_output)
 const SUMS: u32 = 5u;
+// Behind them, the key of the nearest fragment.
+@if(hair_output)
+const SUMS: u32 = 6u;
 // Of colours: there is room for 131 thousand white fragments.
 const UNIT: f32 = 16384.0;
 
@@ -26,4 +32,5 @@ fn add_to_rest(index: u32, fragment: Fragment) {
     add(SUMS * index + 2u, color.r);
     add(SUMS * index + 3u, color.g);
     add(SUMS * index + 4u, color.b);
+    @if(hair_output) { atomicMax(&rest[SUMS * index + 5u], seen_key(fragment.nearness, fragment.alpha)); }
 }

@@ -1,5 +1,6 @@
 // Fragments go to the heads of the lists of their pixels; where lists are bounded, the nearest do, and the others to the rest.
 
+import package::counters::Counters;
 import package::fragment::Fragment;
 import package::node::{PoolUniform, pack_node};
 import package::screen::view;
@@ -12,6 +13,7 @@ import package::rest::add_to_rest;
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> nodes: array<vec4<u32>>;
+@group(0) @binding(9) var<storage, read_write> counters: Counters;
 // The keys of the nearest fragments of each pixel, `pool.kept` of them, the largest first.
 @if(bounded)
 @group(0) @binding(10) var<storage, read> nearest_keys: array<u32>;
@@ -36,6 +38,14 @@ fn is_kept(index: u32, fragment: Fragment) -> bool {
         return pool.kept > 0u && is_nearest(kept_key(fragment.nearness), nearest_keys[last]);
     }
     @if(!bounded) { return true; }
+}
+
+// Counts fragments that are not to have a node. What has overflowed once stays full.
+@if(bounded)
+fn count_behind(count: u32) {
+    if atomicAdd(&counters.merged, count) > 0xffffffffu - count {
+        atomicOr(&counters.merged, 0x80000000u);
+    }
 }
 
 // Puts a node at the head of the list of a pixel.

@@ -11,6 +11,8 @@ struct Counters {
     saturated: u32,
     // What was to be kept: fragments, or references.
     wanted: u32,
+    // Tiles of 8 x 8 pixels with hair.
+    tiles_with_hair: atomic<u32>,
     // What was merged for want of room. While lists are filled, the fragments that are not to have a node.
     merged: atomic<u32>,
 }

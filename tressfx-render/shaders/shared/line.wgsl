@@ -1,9 +1,13 @@
 // A ribbon on the pixels: the line through its middle, the pixels that it may touch, and what it leaves in one.
 
-import package::coverage::{coverage, pixel_reach};
+import package::coverage::{between, coverage, pixel_reach, rise_of};
 import package::fragment::{Fragment, OPAQUE};
+import package::joint::{ROUND, SHARP};
 import package::ribbon::{Ribbon, along};
 import package::screen::{scene_nearness, view};
+
+@if(places)
+import package::places::{shares_of, with_mean};
 
 // Colour and opacity at the ends of a segment.
 struct Paint {
@@ -11,8 +15,15 @@ struct Paint {
     end: vec4<f32>,
 }
 
-// The square of a length in pixels: a shorter segment has no direction and leaves nothing.
+// The square of a length in pixels: a shorter segment has no direction.
 const SHORTEST: f32 = 1e-12;
+// The largest number below 1.
+const LAST_PLACE: f32 = 0.99999994;
+// Pixels by which a segment goes on behind its round end at a sharp turn: half the diagonal of a pixel, so that no pixel loses what it
+// has of the strand behind the turn.
+const ELBOW: f32 = 0.75;
+// More than any segment has.
+const ENDLESS: f32 = 1e6;
 
 // The line through the middle of a ribbon.
 struct Line {
@@ -23,32 +34,78 @@ struct Line {
 }
 
 fn line_of(ribbon: Ribbon) -> Line {
-    let delta = ribbon.end - ribbon.start;
+    var delta = ribbon.end - ribbon.start;
+    if dot(delta, delta) < SHORTEST {
+        delta = vec2(sqrt(SHORTEST), 0.0);
+    }
     let square = dot(delta, delta);
-    let direction = delta * inverseSqrt(max(square, 1e-20));
+    let direction = delta * inverseSqrt(square);
     let normal = vec2(-direction.y, direction.x);
     return Line(delta, square, normal, pixel_reach(normal));
 }
 
-// Where along the ribbon a pixel is, 0 to 1 between its ends.
+// A pixel beside a ribbon: how far along it from its start, and across.
+fn beside(ribbon: Ribbon, line: Line, pixel: vec2<u32>) -> vec2<f32> {
+    let offset = vec2<f32>(pixel) + 0.5 - ribbon.start;
+    return vec2(offset.x * line.normal.y - offset.y * line.normal.x, dot(offset, line.normal));
+}
+
+// Where along the ribbon a pixel is, 0 to less than 1 between its ends, or -1 where the pixel belongs to another segment of the
+// strand. They are divided at the bisectors of joints, half-open, so that segments share no pixel and leave none out.
 fn place_of(ribbon: Ribbon, line: Line, pixel: vec2<u32>) -> f32 {
-    return dot(vec2<f32>(pixel) + 0.5 - ribbon.start, line.delta) / line.square;
+    let at = beside(ribbon, line, pixel);
+    let is_behind = vec2(at.x, at.x - sqrt(line.square)) + vec2(-1.0, 1.0) * ribbon.tilt * at.y >= vec2(0.0);
+    let is_end = ribbon.tilt == vec2(ROUND);
+    let is_own = (is_behind.x || is_end.x) && (!is_behind.y || is_end.y);
+    return select(-1.0, clamp(at.x * inverseSqrt(line.square), 0.0, LAST_PLACE), is_own);
+}
+
+fn is_sharp(ribbon: Ribbon) -> vec2<bool> {
+    return abs(ribbon.tilt) > vec2(SHARP);
+}
+
+// Pixels by which the ends go on behind their round ends.
+fn slack_of(ribbon: Ribbon) -> vec2<f32> {
+    return select(vec2(ENDLESS), select(vec2(ELBOW), vec2(0.0), ribbon.tilt == vec2(ROUND)), is_sharp(ribbon));
+}
+
+// The least length that a pixel is taken with: below that, thin fibres that are seen end-on would come and go.
+const SHORTEST_PIXEL: f32 = 0.5;
+
+// How long a pixel is taken along the line, where so much of the line belongs to the segment. The pixels before a joint know nothing of
+// the round end behind it: what those behind the end get more, the segment's own pixels before the end must lose.
+fn pixel_length(ribbon: Ribbon, line: Line, owned: f32) -> f32 {
+    let whole = line.reach.x + line.reach.y;
+    let has_joint = any(ribbon.tilt != vec2(ROUND));
+    return select(whole, clamp(2.0 * owned, SHORTEST_PIXEL, whole), has_joint);
 }
 
 // What the ribbon leaves in a pixel at `place` along it, wherever the scene is.
 fn fragment_on(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
-    let covered = coverage(dot(vec2<f32>(pixel) + 0.5 - ribbon.start, line.normal), half_width, line.reach);
+    let at = beside(ribbon, line, pixel);
+    var covered = coverage(at.y, half_width, line.reach);
+    // Most segments go straight on at both ends.
+    if any(is_sharp(ribbon)) {
+        let length = sqrt(line.square);
+        let rise = rise_of(at.y, half_width);
+        let ends = rise + slack_of(ribbon);
+        covered *= between(at.x + ends.x, length - at.x + ends.y, pixel_length(ribbon, line, length + rise));
+    }
     let color = mix(paint.start, paint.end, along(ribbon, place));
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
-    return Fragment(color.rgb, nearness, u32(round(saturate(covered * color.a) * OPAQUE)));
+    let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
+    @if(!places) { return Fragment(color.rgb, nearness, alpha); }
+    @if(places) {
+        let parts = with_mean(shares_of(at.y, half_width, line.normal), min(covered, 1.0)) * color.a;
+        return Fragment(color.rgb, nearness, alpha, saturate(parts));
+    }
 }
 
-// What the ribbon leaves in a pixel: nothing unless the pixel's centre lies between its ends, half-open, so that the
-// segments of a straight strand share no pixel; and nothing behind the scene.
+// What the ribbon leaves in a pixel: nothing in one of another segment, and nothing behind the scene.
 fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
     let place = place_of(ribbon, line, pixel);
-    if place < 0.0 || place >= 1.0 {
+    if place < 0.0 {
         return Fragment();
     }
     let scene = scene_nearness(pixel);
@@ -70,18 +127,26 @@ struct Span {
     half_height: f32,
 }
 
+// Pixels by which a ribbon of half the width `extent` reaches beyond its start and its end.
+fn overshoot(ribbon: Ribbon, extent: f32) -> vec2<f32> {
+    return select(extent * abs(ribbon.tilt), extent + slack_of(ribbon), is_sharp(ribbon));
+}
+
 fn span_of(ribbon: Ribbon, line: Line) -> Span {
     let steep = abs(line.delta.y) > abs(line.delta.x);
     let start = select(ribbon.start, ribbon.start.yx, steep);
     let end = select(ribbon.end, ribbon.end.yx, steep);
+    let delta = select(line.delta, line.delta.yx, steep);
     let size = select(vec2<i32>(view.size), vec2<i32>(view.size.yx), steep);
-    // Along a column, and along the ribbon beyond its ends.
     let extent = max(ribbon.half_width.x, ribbon.half_width.y) + line.reach.x;
     let across = select(abs(line.normal), abs(line.normal.yx), steep);
-    let overhang = extent * across.x;
-    let first = max(i32(ceil(min(start.x, end.x) - overhang - 0.5)), 0);
-    let last = min(i32(floor(max(start.x, end.x) + overhang - 0.5)), size.x - 1);
-    return Span(steep, first, last, size, start, (end.y - start.y) / (end.x - start.x), extent / across.y);
+    // Along a row: beside the ribbon, and beyond its ends.
+    let overhang = extent * across.x + overshoot(ribbon, extent) * across.y;
+    let low = min(start.x - overhang.x, end.x - overhang.y);
+    let high = max(start.x + overhang.x, end.x + overhang.y);
+    let first = max(i32(ceil(low - 0.5)), 0);
+    let last = min(i32(floor(high - 0.5)), size.x - 1);
+    return Span(steep, first, last, size, start, delta.y / delta.x, extent / across.y);
 }
 
 // The row, not rounded, that the middle of the ribbon is at in a column.
@@ -89,6 +154,8 @@ fn middle_of(span: Span, column: i32) -> f32 {
     return span.start.y + span.slope * (f32(column) + 0.5 - span.start.x) - 0.5;
 }
 
+// A segment without a length is seen where its strand begins or ends, as a disc.
 fn is_drawn(ribbon: Ribbon, line: Line) -> bool {
-    return ribbon.visible && line.square >= SHORTEST;
+    let delta = ribbon.end - ribbon.start;
+    return ribbon.visible && (dot(delta, delta) >= SHORTEST || any(ribbon.tilt == vec2(ROUND)));
 }

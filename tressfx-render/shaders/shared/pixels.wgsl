@@ -2,14 +2,19 @@
 // the composite, and writes their colours.
 
 import package::counters::Counters;
+import package::tile::{resolved_index, tile_of};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(4) var<storage, read_write> counters: Counters;
-// Premultiplied colour and alpha as four half floats, a pixel.
+// Premultiplied colour and alpha as four half floats, a pixel: tile after tile.
+@if(!hair_output)
 @group(0) @binding(5) var<storage, read_write> resolved: array<vec2<u32>>;
-// Tiles of 8 x 8 pixels with hair.
-@group(0) @binding(6) var<storage, read_write> tiles: array<u32>;
+// Three words a pixel: the same, and the key of the fragment whose depth the pixel has.
+@if(hair_output)
+@group(0) @binding(5) var<storage, read_write> resolved: array<u32>;
+// Tiles of 8 x 8 pixels with hair, and where their pixels are: in the place of the tile.
+@group(0) @binding(6) var<storage, read_write> tiles: array<vec2<u32>>;
 // Six vertices for each of them: the arguments of a draw.
 @group(0) @binding(7) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
@@ -36,11 +41,21 @@ fn count_hairy(has_hair: bool, tile: u32, lane: u32) -> u32 {
     let count = atomicLoad(&hairy);
     if lane == 0u && count > 0u {
         atomicAdd(&counters.pixels_with_hair, count);
-        tiles[atomicAdd(&tile_vertices[0], 6u) / 6u] = tile;
+        atomicAdd(&counters.tiles_with_hair, 1u);
+        tiles[atomicAdd(&tile_vertices[0], 6u) / 6u] = vec2(tile);
     }
     return count;
 }
 
-fn write_pixel(index: u32, color: vec4<f32>) {
-    resolved[index] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+@if(!hair_output)
+fn write_pixel(pixel: vec2<u32>, color: vec4<f32>) {
+    resolved[resolved_index(tile_of(pixel, view.size), pixel)] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+}
+
+@if(hair_output)
+fn write_seen_pixel(pixel: vec2<u32>, color: vec4<f32>, seen: u32) {
+    let first = 3u * resolved_index(tile_of(pixel, view.size), pixel);
+    resolved[first] = pack2x16float(color.rg);
+    resolved[first + 1u] = pack2x16float(color.ba);
+    resolved[first + 2u] = seen;
 }

@@ -1,8 +1,7 @@
 // A quad over a segment: the raster units visit the pixels that the walk visits, and some more.
 
-import package::coverage::pixel_reach;
 import package::fragment::Fragment;
-import package::line::{Paint, SHORTEST, fragment_at, line_of};
+import package::line::{Paint, fragment_at, is_drawn, line_of, overshoot};
 import package::ribbon::{Ribbon, scale_of};
 import package::screen::view;
 import package::strands::{paint_of, ribbon_of, section};
@@ -15,7 +14,7 @@ struct Corner {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) ends: vec4<f32>,
     @location(1) @interpolate(flat) half_width_and_nearness: vec4<f32>,
-    @location(2) @interpolate(flat) part: vec2<f32>,
+    @location(2) @interpolate(flat) part_and_tilt: vec4<f32>,
     @location(3) @interpolate(flat) paint_start: vec4<f32>,
     @location(4) @interpolate(flat) paint_end: vec4<f32>,
 }
@@ -24,26 +23,25 @@ struct Corner {
 fn corner_of(vertex: u32) -> Corner {
     let segment = vertex / 6u;
     let ribbon = ribbon_of(segment % section.strands, segment / section.strands);
-    let delta = ribbon.end - ribbon.start;
-    let square = dot(delta, delta);
-    if !ribbon.visible || square < SHORTEST {
+    let line = line_of(ribbon);
+    if !is_drawn(ribbon, line) {
         // All corners in one point: nothing is drawn.
-        return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec2(0.0), vec4(0.0), vec4(0.0));
+        return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     }
     let paint = paint_of(segment % section.strands, segment / section.strands);
-    let direction = delta * inverseSqrt(square);
-    let normal = vec2(-direction.y, direction.x);
-    let extent = max(ribbon.half_width.x, ribbon.half_width.y) + pixel_reach(normal).x + MARGIN;
+    let direction = vec2(line.normal.y, -line.normal.x);
+    let extent = max(ribbon.half_width.x, ribbon.half_width.y) + line.reach.x + MARGIN;
+    let beyond = overshoot(ribbon, extent) + MARGIN;
     // Corners 0 1 2 and 2 1 3, two bits each: along the ribbon and across.
     let corner = (0xda4u >> (2u * (vertex % 6u))) & 3u;
-    let end = select(ribbon.start - MARGIN * direction, ribbon.end + MARGIN * direction, (corner & 1u) == 1u);
-    let pixel = end + normal * select(-extent, extent, corner > 1u) + vec2<f32>(view.offset);
+    let end = select(ribbon.start - beyond.x * direction, ribbon.end + beyond.y * direction, (corner & 1u) == 1u);
+    let pixel = end + line.normal * select(-extent, extent, corner > 1u) + vec2<f32>(view.offset);
     let clip = pixel / vec2<f32>(view.target_size) * 2.0 - 1.0;
     return Corner(
         vec4(clip.x, -clip.y, 0.0, 1.0),
         vec4(ribbon.start, ribbon.end),
         vec4(ribbon.half_width, ribbon.nearness),
-        ribbon.part,
+        vec4(ribbon.part, ribbon.tilt),
         paint.start,
         paint.end,
     );
@@ -63,6 +61,7 @@ fn fragment_of(corner: Corner) -> Fragment {
     }
     let widths = corner.half_width_and_nearness;
     let scale = scale_of(view.lens, widths.zw);
-    let ribbon = Ribbon(corner.ends.xy, corner.ends.zw, widths.xy, widths.zw, corner.part, scale, true);
+    let joints = corner.part_and_tilt;
+    let ribbon = Ribbon(corner.ends.xy, corner.ends.zw, widths.xy, widths.zw, joints.xy, scale, joints.zw, true);
     return fragment_at(ribbon, line_of(ribbon), Paint(corner.paint_start, corner.paint_end), pixel);
 }

@@ -19,6 +19,8 @@ struct Ribbon {
     part: vec2<f32>,
     // 1 / w at the ends: what is linear along the segment is not linear on the screen.
     scale: vec2<f32>,
+    // How the strand goes on at the ends, see `joint`.
+    tilt: vec2<f32>,
     visible: bool,
 }
 
@@ -76,6 +78,16 @@ fn scale_of(lens: LensUniform, nearness: vec2<f32>) -> vec2<f32> {
     return select(vec2(1.0), nearness, lens.is_perspective == 1u);
 }
 
+// 1 / w of a point by its distance from the plane of the eye.
+fn scale_at(lens: LensUniform, distance: f32) -> f32 {
+    return select(1.0, 1.0 / distance, lens.is_perspective == 1u);
+}
+
+// Pixels around the image within which all is kept that a ribbon of this half width may cover.
+fn margin_of(half_width: vec2<f32>) -> f32 {
+    return 1.25 * max(half_width.x, half_width.y) + 2.0;
+}
+
 // Where on a segment, 0 to 1, its screen parameter `t` is, that is 0 and 1 at the ribbon's ends.
 fn along(ribbon: Ribbon, t: f32) -> f32 {
     return mix(ribbon.part.x, ribbon.part.y, t * ribbon.scale.y / mix(ribbon.scale.x, ribbon.scale.y, t));
@@ -100,5 +112,6 @@ fn clip(ribbon: Ribbon, lens: LensUniform, size: vec2<f32>, margin: f32) -> Ribb
     cut.nearness = mix(ribbon.nearness.xx, ribbon.nearness.yy, t);
     cut.scale = scale_of(lens, cut.nearness);
     cut.part = vec2(along(ribbon, t.x), along(ribbon, t.y));
+    cut.tilt = select(ribbon.tilt, vec2(0.0), vec2(t.x > 0.0, t.y < 1.0));
     return cut;
 }

@@ -1,7 +1,8 @@
 // The strands of a section before the lens of a view: what every technique that walks over them is given.
 
+import package::joint::{ROUND, rise_along, tilt_of};
 import package::line::Paint;
-import package::ribbon::{End, Ribbon, clip, is_sound, project};
+import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, on_screen, project, scale_at};
 import package::screen::view;
 import package::section::SectionUniform;
 
@@ -10,27 +11,104 @@ import package::section::SectionUniform;
 @group(0) @binding(3) var<storage, read> colors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> thickness: array<f32>;
 
-fn end_at(strand: u32, vertex: u32) -> End {
-    let world = section.pose * vec4(positions[vertex * section.strands + strand].xyz, 1.0);
-    let width = thickness[vertex * section.guides + strand % section.guides];
-    return End((view.lens.to_eye * world).xyz, section.fibre_radius * mix(section.tip_width, 1.0, width));
+fn is_sound_at(strand: u32, vertex: u32) -> bool {
+    return is_sound(positions[vertex * section.strands + strand].xyz);
 }
 
-fn paint_at(strand: u32, vertex: u32) -> vec4<f32> {
+// A vertex in the space of the eye.
+fn point_at(strand: u32, vertex: u32) -> vec3<f32> {
+    let world = section.pose * vec4(positions[vertex * section.strands + strand].xyz, 1.0);
+    return (view.lens.to_eye * world).xyz;
+}
+
+fn radius_at(strand: u32, vertex: u32) -> f32 {
+    let width = thickness[vertex * section.guides + strand % section.guides];
+    return section.fibre_radius * mix(section.tip_width, 1.0, width);
+}
+
+fn end_at(strand: u32, vertex: u32) -> End {
+    return End(point_at(strand, vertex), radius_at(strand, vertex));
+}
+
+// Three points of a strand that follow each other, in the space of the eye.
+struct Bend {
+    before: vec3<f32>,
+    middle: vec3<f32>,
+    after: vec3<f32>,
+}
+
+fn pixel_at(point: vec3<f32>) -> vec2<f32> {
+    return on_screen(view.lens, point.xy, scale_at(view.lens, -point.z));
+}
+
+// The tilt at the middle one. What reaches through the near plane goes straight on.
+fn tilt_between(bend: Bend) -> f32 {
+    if min(min(-bend.before.z, -bend.middle.z), -bend.after.z) <= view.lens.near {
+        return 0.0;
+    }
+    let middle = pixel_at(bend.middle);
+    return tilt_of(middle - pixel_at(bend.before), pixel_at(bend.after) - middle);
+}
+
+fn shaded_at(strand: u32, vertex: u32) -> vec4<f32> {
     let color = colors[vertex * section.strands + strand];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
 }
 
+// Colour and opacity of the surface that is seen at a vertex: they are those of a place before or behind it. `beside` are the
+// vertices before and after it.
+fn paint_between(bend: Bend, strand: u32, vertex: u32, beside: vec2<u32>) -> vec4<f32> {
+    let rise = rise_along(view.lens, bend.middle, bend.after - bend.before, radius_at(strand, vertex));
+    let edge = select(bend.before, bend.after, rise > 0.0) - bend.middle;
+    let share = min(abs(rise) * inverseSqrt(max(dot(edge, edge), 1e-30)), 1.0);
+    return mix(shaded_at(strand, vertex), shaded_at(strand, select(beside.x, beside.y, rise > 0.0)), share);
+}
+
+// The vertices before and after one; where no segment leads to it or from it, the vertex itself.
+fn neighbours_of(strand: u32, vertex: u32) -> vec2<u32> {
+    let last = section.vertices - 1u;
+    let near = vec2(max(vertex, 1u) - 1u, min(vertex + 1u, last));
+    return select(vec2(vertex), near, vec2(is_sound_at(strand, near.x), is_sound_at(strand, near.y)));
+}
+
+fn bend_at(strand: u32, vertex: u32, beside: vec2<u32>) -> Bend {
+    return Bend(point_at(strand, beside.x), point_at(strand, vertex), point_at(strand, beside.y));
+}
+
+// A segment with what is before and after it: each of its four points is looked up once.
+struct Stretch {
+    vertices: vec4<u32>,
+    start: Bend,
+    end: Bend,
+}
+
+fn stretch_of(strand: u32, vertex: u32) -> Stretch {
+    let first = neighbours_of(strand, vertex).x;
+    let last = neighbours_of(strand, vertex + 1u).y;
+    let start = Bend(point_at(strand, first), point_at(strand, vertex), point_at(strand, vertex + 1u));
+    let end = Bend(start.middle, start.after, point_at(strand, last));
+    return Stretch(vec4(first, vertex, vertex + 1u, last), start, end);
+}
+
 // The segment from a vertex to the next.
 fn ribbon_of(strand: u32, vertex: u32) -> Ribbon {
-    let i = vertex * section.strands + strand;
-    if !is_sound(positions[i].xyz) || !is_sound(positions[i + section.strands].xyz) {
+    if !is_sound_at(strand, vertex) || !is_sound_at(strand, vertex + 1u) {
         return Ribbon();
     }
-    let ribbon = project(end_at(strand, vertex), end_at(strand, vertex + 1u), view.lens);
-    return clip(ribbon, view.lens, vec2<f32>(view.size), max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
+    let stretch = stretch_of(strand, vertex);
+    let start = End(stretch.start.middle, radius_at(strand, vertex));
+    var ribbon = project(start, End(stretch.end.middle, radius_at(strand, vertex + 1u)), view.lens);
+    let joints = vec2(tilt_between(stretch.start), tilt_between(stretch.end));
+    let tilt = select(joints, vec2(ROUND), stretch.vertices.xw == stretch.vertices.yz);
+    // What the near plane has cut has no joint there.
+    ribbon.tilt = select(tilt, vec2(0.0), vec2(ribbon.part.x > 0.0, ribbon.part.y < 1.0));
+    return clip(ribbon, view.lens, vec2<f32>(view.size), margin_of(ribbon.half_width));
 }
 
 fn paint_of(strand: u32, vertex: u32) -> Paint {
-    return Paint(paint_at(strand, vertex), paint_at(strand, vertex + 1u));
+    let stretch = stretch_of(strand, vertex);
+    return Paint(
+        paint_between(stretch.start, strand, vertex, stretch.vertices.xz),
+        paint_between(stretch.end, strand, vertex + 1u, stretch.vertices.yw),
+    );
 }

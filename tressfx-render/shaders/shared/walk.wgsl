@@ -5,6 +5,7 @@
 import package::line::{Paint, fragment_at, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::sink::{Sink, take};
+import package::strands::{paint_of, ribbon_of, section};
 
 // Visits the pixels that the ribbon may touch, column by column along the axis that it follows most.
 fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
@@ -23,5 +24,14 @@ fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
                 take(sink, pixel, fragment);
             }
         }
+    }
+}
+
+// Visits those of a segment of the section, if there are so many.
+fn walk_segment(segment: u32, sink: ptr<function, Sink>) {
+    if segment < section.strands * (section.vertices - 1u) {
+        let strand = segment % section.strands;
+        let vertex = segment / section.strands;
+        walk(ribbon_of(strand, vertex), paint_of(strand, vertex), sink);
     }
 }

@@ -3,8 +3,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::sink::{Sink, count_fragments};
-import package::strands::{paint_of, ribbon_of, section};
-import package::walk::walk;
+import package::walk::walk_segment;
 
 var<workgroup> counted: atomic<u32>;
 
@@ -15,12 +14,9 @@ fn shortcut_depths(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgro
         atomicStore(&counted, 0u);
     }
     workgroupBarrier();
-    let i = thread_index(group, groups, lane);
-    if i < section.strands * (section.vertices - 1u) {
-        var sink: Sink;
-        walk(ribbon_of(i % section.strands, i / section.strands), paint_of(i % section.strands, i / section.strands), &sink);
-        atomicAdd(&counted, sink.count);
-    }
+    var sink: Sink;
+    walk_segment(thread_index(group, groups, lane), &sink);
+    atomicAdd(&counted, sink.count);
     workgroupBarrier();
     if lane == 0u {
         count_fragments(atomicLoad(&counted));

@@ -1,17 +1,23 @@
 // Last pass of ShortCut, one thread a pixel: the colour of its nearest fragments with the opacity of all.
 
 import package::constants::K;
-import package::pixels::{count_hairy, counters, index_of, is_inside, write_pixel};
+import package::pixels::{count_hairy, counters, index_of, is_inside};
 import package::sums::{FULL, transmittance_of};
 
 @if(ordered)
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
+@if(hair_output)
+import package::pixels::write_seen_pixel;
+@if(!hair_output)
+import package::pixels::write_pixel;
 @if(!ordered)
 import package::layers::UNIT;
 @if(!ordered)
-import package::pixels::resolved;
+import package::pixels::{resolved, view};
 @if(!ordered)
 import package::sums::mean_color;
+@if(!ordered)
+import package::tile::{resolved_index, tile_of};
 
 @group(0) @binding(1) var<storage, read> layers: array<u32>;
 @group(0) @binding(2) var<storage, read> opticals: array<u32>;
@@ -21,10 +27,22 @@ import package::sums::mean_color;
 @if(!ordered)
 @group(0) @binding(3) var<storage, read> sums: array<vec2<u32>>;
 
+// The sums that the second pass has left in `resolved`.
+@if(!ordered && !hair_output)
+fn red_green(index: u32) -> vec2<u32> {
+    return resolved[index];
+}
+
+@if(!ordered && hair_output)
+fn red_green(index: u32) -> vec2<u32> {
+    return vec2(resolved[3u * index], resolved[3u * index + 1u]);
+}
+
 // Where there is opacity and no colour, as rounding might have it, the picture is left as it was, not made black.
 @if(!ordered)
-fn front(index: u32, behind: f32) -> vec4<f32> {
-    let color = min(vec3(resolved[index], sums[index].x), vec3(FULL));
+fn front(pixel: vec2<u32>, index: u32, behind: f32) -> vec4<f32> {
+    let place = resolved_index(tile_of(pixel, view.size), pixel);
+    let color = min(vec3(red_green(place), sums[index].x), vec3(FULL));
     let weight = min(sums[index].y, FULL);
     if weight == 0u {
         return vec4(0.0);
@@ -34,7 +52,7 @@ fn front(index: u32, behind: f32) -> vec4<f32> {
 
 // What is behind has the mean colour of those in front.
 @if(ordered)
-fn front(index: u32, behind: f32) -> vec4<f32> {
+fn front(pixel: vec2<u32>, index: u32, behind: f32) -> vec4<f32> {
     var color = vec3(0.0);
     var transmittance = 1.0;
     var sum = vec4(0.0);
@@ -68,8 +86,10 @@ fn shortcut_resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(wo
     if inside && count > 0u {
         var color = vec4(0.0);
         if has_hair {
-            color = front(index, transmittance_of(min(opticals[index], FULL)));
+            color = front(pixel.xy, index, transmittance_of(min(opticals[index], FULL)));
         }
-        write_pixel(index, color);
+        @if(!hair_output) { write_pixel(pixel.xy, color); }
+        // The first layer is that of the nearest.
+        @if(hair_output) { write_seen_pixel(pixel.xy, color, layers[index * K]); }
     }
 }

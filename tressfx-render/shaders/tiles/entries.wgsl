@@ -15,6 +15,9 @@ var<workgroup> total: atomic<u32>;
 // Depth; once sorted, the entry that is at this place.
 var<workgroup> keys: array<u32, ENTRIES>;
 var<workgroup> colors: array<vec2<u32>, ENTRIES>;
+// Opacities at the places of the pixel, 16 bits each.
+@if(places)
+var<workgroup> parts: array<vec2<u32>, ENTRIES>;
 var<workgroup> places: array<atomic<u32>, ENTRIES>;
 // The keys in the order of pixels.
 var<workgroup> keys_of_pixels: array<u32, ENTRIES>;
@@ -40,6 +43,9 @@ fn add(entry: u32, pixel: u32, key: u32, fragment: Fragment) {
     if entry < ENTRIES {
         keys[entry] = key;
         colors[entry] = pack_color(fragment);
+        @if(places) {
+            parts[entry] = vec2(pack2x16unorm(fragment.parts.xy), pack2x16unorm(fragment.parts.zw));
+        }
         atomicStore(&places[entry], (pixel << PIXEL_SHIFT) | atomicAdd(&counts[pixel], 1u));
     }
 }
@@ -49,7 +55,16 @@ fn add(entry: u32, pixel: u32, key: u32, fragment: Fragment) {
 fn is_before(a: u32, b: u32) -> bool {
     let first = colors[a];
     let second = colors[b];
-    return first.x < second.x || (first.x == second.x && (first.y < second.y || (first.y == second.y && a < b)));
+    @if(places) {
+        if all(first == second) {
+            return is_less(parts[a], parts[b], a < b);
+        }
+    }
+    return is_less(first, second, a < b);
+}
+
+fn is_less(a: vec2<u32>, b: vec2<u32>, if_same: bool) -> bool {
+    return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && if_same)));
 }
 
 // How many of its pixel come before the entry at a place in the order of pixels.
@@ -101,4 +116,21 @@ fn places_of(pixel: u32) -> vec2<u32> {
 // The colour at a place.
 fn color_at(place: u32) -> vec2<u32> {
     return colors[keys[place]];
+}
+
+// The opacities at a place.
+@if(places)
+fn parts_at(place: u32) -> vec4<f32> {
+    let packed = parts[keys[place]];
+    return vec4(unpack2x16unorm(packed.x), unpack2x16unorm(packed.y));
+}
+
+// The depth of the entry at a place of a pixel. Its key is where it was before the entries of the pixel were put in order.
+@if(hair_output)
+fn key_at_place(pixel: u32, place: u32) -> u32 {
+    var i = starts[pixel];
+    while i + 1u < starts[pixel + 1u] && atomicLoad(&places[i]) >> ENTRY_SHIFT != keys[place] {
+        i++;
+    }
+    return keys_of_pixels[i];
 }

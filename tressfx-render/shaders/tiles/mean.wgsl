@@ -10,11 +10,16 @@ const MOST: u32 = 2048u;
 const BRIGHTEST: f32 = 16.0;
 const UNIT: f32 = 65536.0;
 
-// Fragments, their optical depth, weight and colour; a pixel.
-var<workgroup> sums: array<array<atomic<u32>, 6>, PIXELS>;
+@if(!hair_output)
+const SUMS: u32 = 6u;
+@if(hair_output)
+const SUMS: u32 = 7u;
+
+// Fragments, their optical depth, weight and colour, and, where depth is written, the largest alpha; a pixel.
+var<workgroup> sums: array<array<atomic<u32>, SUMS>, PIXELS>;
 
 fn empty_mean(pixel: u32) {
-    for (var i = 0u; i < 6u; i++) {
+    for (var i = 0u; i < SUMS; i++) {
         atomicStore(&sums[pixel][i], 0u);
     }
 }
@@ -32,6 +37,7 @@ fn add_to_mean(pixel: u32, fragment: Fragment) {
     atomicAdd(&sums[pixel][3], color.x);
     atomicAdd(&sums[pixel][4], color.y);
     atomicAdd(&sums[pixel][5], color.z);
+    @if(hair_output) { atomicMax(&sums[pixel][6], fragment.alpha); }
 }
 
 fn blend_mean(front: Front, pixel: u32) -> Front {
@@ -41,5 +47,12 @@ fn blend_mean(front: Front, pixel: u32) -> Front {
     }
     let color = vec3(atomicLoad(&sums[pixel][3]), atomicLoad(&sums[pixel][4]), atomicLoad(&sums[pixel][5]));
     let alpha = 1.0 - transmittance_of(atomicLoad(&sums[pixel][1]));
-    return over(front, mean_color(color, weight, UNIT), alpha, atomicLoad(&sums[pixel][0]));
+    @if(!places) { return over(front, mean_color(color, weight, UNIT), alpha, atomicLoad(&sums[pixel][0])); }
+    @if(places) { return over(front, mean_color(color, weight, UNIT), vec4(alpha), atomicLoad(&sums[pixel][0])); }
+}
+
+// The largest alpha of the fragments of a pixel; 0 where there are none.
+@if(hair_output)
+fn largest_alpha(pixel: u32) -> u32 {
+    return atomicLoad(&sums[pixel][6]);
 }

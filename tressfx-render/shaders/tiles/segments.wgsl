@@ -1,15 +1,15 @@
 // The segments of all sections on the screen: what `hair.render.tile_points` has left.
 
 import package::line::Paint;
-import package::ribbon::{End, Ribbon, clip, is_sound, project, scale_of, width_scale};
+import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, project, scale_of, width_scale};
 import package::screen::view;
 import package::tiles::{distance_of, tiles};
 
 // A vertex: its pixel, nearness, and radius / w. Where it is not beyond the near plane: its point in the space of the eye, and
 // its radius below 0.
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
-// Colour and opacity as four half floats, a vertex.
-@group(0) @binding(3) var<storage, read> paints: array<vec2<u32>>;
+// Colour and opacity of the surface at a vertex, as four half floats, and the bits of its tilt.
+@group(0) @binding(3) var<storage, read> paints: array<vec4<u32>>;
 
 // Vertices of a segment.
 struct Segment {
@@ -56,17 +56,20 @@ fn ribbon_of(segment: Segment) -> Ribbon {
     if !is_sound(a.xyz) || !is_sound(b.xyz) {
         return Ribbon();
     }
+    let tilt = bitcast<vec2<f32>>(vec2(paints[segment.start].z, paints[segment.end].z));
     if min(a.w, b.w) >= 0.0 && all(max(abs(a.xy), abs(b.xy)) < vec2(LARGEST_PIXEL)) {
         let nearness = vec2(a.z, b.z);
         let half_width = vec2(a.w, b.w) * width_scale(view.lens, b.xy - a.xy);
-        return Ribbon(a.xy, b.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), true);
+        return Ribbon(a.xy, b.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), tilt, true);
     }
-    let ribbon = project(end_of(a), end_of(b), view.lens);
-    return clip(ribbon, view.lens, vec2<f32>(view.size), max(ribbon.half_width.x, ribbon.half_width.y) + 2.0);
+    var ribbon = project(end_of(a), end_of(b), view.lens);
+    ribbon.tilt = select(tilt, vec2(0.0), vec2(a.w < 0.0, b.w < 0.0));
+    return clip(ribbon, view.lens, vec2<f32>(view.size), margin_of(ribbon.half_width));
 }
 
 fn paint_at(vertex: u32) -> vec4<f32> {
-    return vec4(unpack2x16float(paints[vertex].x), unpack2x16float(paints[vertex].y));
+    let paint = paints[vertex];
+    return vec4(unpack2x16float(paint.x), unpack2x16float(paint.y));
 }
 
 fn paint_of(segment: Segment) -> Paint {

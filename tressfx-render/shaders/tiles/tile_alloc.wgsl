@@ -2,33 +2,32 @@
 // Eight lanes a tile, a part of its slices each.
 
 import package::grid::GROUP;
-import package::tiles::{CLASSES, QUARTERS, Queue, ROW, SLICES, WaitingTile, tile_count};
+import package::tiles::{BLEND_GRID, CLASSES, QUARTERS, Queue, ROW, SLICES, STORE_GRIDS, TileInfo, ViewState, tile_count, tiles};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
-// Tiles that may have hair, and six vertices for each of them: the arguments of a draw.
-@group(0) @binding(8) var<storage, read_write> hairy: array<u32>;
+// Tiles that may have hair and where their pixels are, and six vertices for each of them: the arguments of a draw.
+@group(0) @binding(8) var<storage, read_write> hairy: array<vec2<u32>>;
 @group(0) @binding(11) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
-// The grid of groups that takes a quarter of a tile each.
-@group(0) @binding(9) var<storage, read_write> groups_of_tiles: array<atomic<u32>, 3>;
-
-// Nearness of the nearest vertex, a tile.
-@group(0) @binding(10) var<storage, read> nearests: array<f32>;
-
-// The first reference of a tile.
-@group(0) @binding(12) var<storage, read_write> firsts: array<u32>;
+@group(0) @binding(9) var<storage, read_write> grids: array<atomic<u32>>;
+@group(0) @binding(10) var<storage, read_write> infos: array<TileInfo>;
+@group(0) @binding(4) var<storage, read_write> state: ViewState;
 
 const PARTS: u32 = 8u;
 const TILES: u32 = GROUP / PARTS;
 const SLICES_OF_A_LANE: u32 = SLICES / PARTS;
 // Where sums end, so that they never wrap. There is never room for more than MOST / TILES references.
 const MOST: u32 = 0x40000000u;
+// No round has this reference.
+const NOWHERE: u32 = 0xffffffffu;
 
 var<workgroup> group_references: atomic<u32>;
 var<workgroup> group_place: u32;
 var<workgroup> group_tile: u32;
+// Tiles of the group, and those of them that the composite does not draw yet.
 var<workgroup> group_size: atomic<u32>;
+var<workgroup> group_unlisted: atomic<u32>;
 var<workgroup> sums: array<u32, GROUP>;
 var<workgroup> tile_places: array<u32, TILES>;
 var<workgroup> class_sizes: array<atomic<u32>, CLASSES>;
@@ -51,17 +50,51 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
-// The draw holds so many tiles more, and the grid their quarters. Returns how many tiles there were.
-fn lengthen(tiles: u32) -> u32 {
-    if tiles == 0u {
-        return 0u;
+// The grid that blends holds the quarters of so many tiles more.
+fn lengthen_grid(count: u32) {
+    let size = QUARTERS * (atomicAdd(&queue.size, count) + count);
+    atomicMax(&grids[BLEND_GRID], min(size, ROW));
+    atomicMax(&grids[BLEND_GRID + 1u], (size + ROW - 1u) / ROW);
+    atomicMax(&grids[BLEND_GRID + 2u], 1u);
+}
+
+// References are stored in the rounds in which tiles begin that have theirs from `first` to `end`.
+fn open_rounds(first: u32, end: u32) {
+    let last = min((end - 1u) / tiles.window, tiles.rounds - 1u);
+    for (var round = first / tiles.window; round <= last; round++) {
+        for (var axis = 0u; axis < 3u; axis++) {
+            atomicStore(&grids[STORE_GRIDS + 3u * round + axis], tiles.bin_groups[axis]);
+        }
     }
-    let before = atomicAdd(&tile_vertices[0], 6u * tiles) / 6u;
-    let size = QUARTERS * (before + tiles);
-    atomicMax(&groups_of_tiles[0], min(size, ROW));
-    atomicMax(&groups_of_tiles[1], (size + ROW - 1u) / ROW);
-    atomicMax(&groups_of_tiles[2], 1u);
-    return before;
+}
+
+// What the whole group asks for. One lane comes here.
+fn request_of_group() {
+    let count = atomicLoad(&group_references);
+    group_place = request(count);
+    if count == 0u {
+        return;
+    }
+    lengthen_grid(atomicLoad(&group_size));
+    open_rounds(group_place, group_place + count);
+    let unlisted = atomicLoad(&group_unlisted);
+    if unlisted > 0u {
+        group_tile = atomicAdd(&state.counters.tiles_with_hair, unlisted);
+        atomicMax(&tile_vertices[0], 6u * min(group_tile + unlisted, tiles.slots));
+    }
+}
+
+// A tile with so many references from `first` on is to be blended, or is left out where its pixels have no room.
+fn list_tile(tile: u32, slot: u32, first: u32, count: u32) {
+    if slot >= tiles.slots {
+        infos[tile].first = NOWHERE;
+        infos[tile].waiting = 0u;
+        atomicAdd(&state.counters.dropped, count);
+        return;
+    }
+    infos[tile].first = first;
+    infos[tile].slot = slot + 1u;
+    hairy[slot] = vec2(tile, slot);
 }
 
 @compute @workgroup_size(GROUP)
@@ -73,13 +106,18 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     if lane == 0u {
         atomicStore(&group_references, 0u);
         atomicStore(&group_size, 0u);
+        atomicStore(&group_unlisted, 0u);
     }
     if lane < CLASSES {
         atomicStore(&class_sizes[lane], 0u);
     }
     var in_bins: array<u32, SLICES_OF_A_LANE>;
     var sum = 0u;
+    var info: TileInfo;
     if tile < tile_count() {
+        info = infos[tile];
+    }
+    if info.waiting != 0u {
         for (var i = 0u; i < SLICES_OF_A_LANE; i++) {
             in_bins[i] = bins[(part * SLICES_OF_A_LANE + i) * tile_count() + tile];
         }
@@ -101,22 +139,28 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     let load_class = min(firstLeadingBit(max(count, 1u)) / 2u, CLASSES - 1u);
     var position = 0u;
     var place_of_tile = 0u;
+    if part == 0u && info.waiting == (1u << QUARTERS) - 1u {
+        // It is known again when the tile has been blended.
+        atomicStore(&state.hidden[tile], 0u);
+    }
     if part == 0u && count > 0u {
         // A tile with more than this ends behind the last reference that there is room for.
         tile_places[own] = atomicAdd(&group_references, min(count, MOST / TILES));
         position = atomicAdd(&class_sizes[load_class], 1u);
-        place_of_tile = atomicAdd(&group_size, 1u);
+        atomicAdd(&group_size, 1u);
+        if info.slot == 0u {
+            place_of_tile = atomicAdd(&group_unlisted, 1u);
+        }
     }
     workgroupBarrier();
     if lane == 0u {
-        group_place = request(atomicLoad(&group_references));
-        group_tile = lengthen(atomicLoad(&group_size));
+        request_of_group();
     }
     if lane < CLASSES && atomicLoad(&class_sizes[lane]) > 0u {
         class_places[lane] = atomicAdd(&queue.sizes[lane], atomicLoad(&class_sizes[lane]));
     }
     workgroupBarrier();
-    // Nor has a lane beyond the last tile.
+    // Nor has a tile that is blended already, or a lane beyond the last tile.
     if count == 0u {
         return;
     }
@@ -127,9 +171,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         place = min(place + min(in_bins[i], MOST), 2u * MOST);
     }
     if part == 0u {
-        firsts[tile] = first;
-        hairy[group_tile + place_of_tile] = tile;
-        queue.tiles[load_class * tile_count() + class_places[load_class] + position] =
-            WaitingTile(tile, first, nearests[tile], 0u);
+        list_tile(tile, select(info.slot - 1u, group_tile + place_of_tile, info.slot == 0u), first, count);
+        queue.tiles[load_class * tile_count() + class_places[load_class] + position] = tile;
     }
 }

@@ -8,17 +8,13 @@ import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
 import package::segments::{ribbon_of, segment_at};
-import package::tiles::{FIRST_QUARTER, IS_NEAREST, TILE, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
+import package::tile::TILE;
+import package::tiles::{FIRST_QUARTER, IS_NEAREST, TileInfo, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
-// Nearness of the scene, a tile.
-@group(0) @binding(6) var<storage, read> depths: array<f32>;
+@group(0) @binding(6) var<storage, read> infos: array<TileInfo>;
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
-// The first reference of a tile, once it has its place.
-@group(0) @binding(10) var<storage, read> firsts: array<u32>;
-// Nearness of the nearest vertex, a tile.
-@group(0) @binding(9) var<storage, read> nearests: array<f32>;
 
 // Pixels, and share of a distance, by which a part of a ribbon is taken larger than it is: more than rounding can move a
 // fragment.
@@ -97,14 +93,15 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
     for (var row = rows.x / edge; row <= rows.y / edge; row++) {
         let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
         let tile = place.y * tile_columns() + place.x;
-        if nearness.y * (1.0 + DISTANCE_MARGIN) < depths[tile] {
+        let info = infos[tile];
+        if nearness.y * (1.0 + DISTANCE_MARGIN) < info.farthest {
             continue;
         }
-        if tiles.stores == 1u && (firsts[tile] < tiles.first || firsts[tile] >= tiles.end) {
+        if tiles.stores == 1u && (info.first < tiles.first || info.first >= tiles.end) {
             // The tile has its references in another round.
             continue;
         }
-        let begin = begin_of(nearests[tile]);
+        let begin = begin_of(info.nearest);
         let last = slice_of(begin, distances.y);
         let reference = vertex | quarters_of(span, first, second, row);
         var flag = IS_NEAREST;

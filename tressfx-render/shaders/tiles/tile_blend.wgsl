@@ -6,25 +6,42 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
-import package::counters::Counters;
 import package::entries::{LANES, add, color_at, empty, ends, places_of, sort, total};
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
-import package::front::{Front, NOTHING, over};
+import package::front::{Front, nothing_yet, over, passes};
 import package::line::{fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
 import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
-import package::tiles::{CLASSES, FIRST_QUARTER, IS_NEAREST, QUARTERS, SLICES, TILE, VERTEX_MASK, WaitingTile, WaitingTiles, begin_of, tile_columns, tile_count, tiles};
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, next_unit, unit_from};
+import package::tile::{TILE, resolved_index};
+import package::tiles::{
+    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, QUARTERS, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
+    WaitingTiles, begin_of, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
+};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
-@group(0) @binding(4) var<storage, read_write> counters: Counters;
+@if(places)
+import package::entries::parts_at;
+@if(hair_output)
+import package::entries::key_at_place;
+@if(hair_output)
+import package::fragment::{FAINT, NOT_FAINT, nearness_of, seen_key};
+@if(hair_output)
+import package::mean::largest_alpha;
+
+@group(0) @binding(4) var<storage, read_write> state: ViewState;
 // The end of each slice of each tile, a slice after the other.
 @group(0) @binding(6) var<storage, read> bins: array<u32>;
 @group(0) @binding(7) var<storage, read> queue: WaitingTiles;
 @group(0) @binding(8) var<storage, read> references: array<u32>;
-// Premultiplied colour and alpha as four half floats, a pixel.
+// Premultiplied colour and alpha as four half floats, a pixel: those of a tile in its slot.
+@if(!hair_output)
 @group(0) @binding(9) var<storage, read_write> resolved: array<vec2<u32>>;
+// Three words a pixel: the same, and the key of the fragment whose depth the pixel has.
+@if(hair_output)
+@group(0) @binding(9) var<storage, read_write> resolved: array<u32>;
+@group(0) @binding(10) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const NO_TILE: u32 = 0xffffffffu;
 // References that a lane looks at before the group draws those that touch its quarter.
@@ -32,11 +49,16 @@ const LOOKS: u32 = 4u;
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
+// Hair is hidden once more if it is farther behind what was seen than this share of it, and of the depth of all hair.
+const SEEN_MARGIN: f32 = 0.25;
+const DEPTH_MARGIN: f32 = 0.01;
+
 // A quarter of a tile.
 struct Job {
-    tile: WaitingTile,
+    tile: u32,
     quarter: u32,
-    // 1 where the tile has its references in this round.
+    info: TileInfo,
+    // 1 where the tile has its references in this round, and the quarter is still to be blended.
     is_now: u32,
 }
 
@@ -49,8 +71,14 @@ var<workgroup> hit_count: atomic<u32>;
 var<workgroup> scene: array<f32, PIXELS>;
 // A bit a pixel that takes more.
 var<workgroup> open: atomic<u32>;
+// Distance behind which nothing is seen; below 0 where there is none.
+var<workgroup> seen_to: f32;
 var<workgroup> hairy_pixels: atomic<u32>;
 var<workgroup> blended_fragments: atomic<u32>;
+
+// The key of the nearest fragment that was blended into the pixel of the lane.
+@if(hair_output)
+var<private> seen: u32;
 
 // The work of a group: the heaviest tiles come first.
 fn job_of(group: u32) -> Job {
@@ -60,12 +88,22 @@ fn job_of(group: u32) -> Job {
     for (var i = CLASSES; i > 0u; i--) {
         let size = sizes[i - 1u];
         if rest < size {
-            let tile = queue.tiles[(i - 1u) * tile_count() + rest];
-            return Job(tile, group % QUARTERS, u32(tile.first >= tiles.first && tile.first < tiles.end));
+            return quarter_of(queue.tiles[(i - 1u) * tile_count() + rest], group % QUARTERS);
         }
         rest -= size;
     }
-    return Job(WaitingTile(NO_TILE, 0u, 0.0, 0u), 0u, 0u);
+    return Job(NO_TILE, 0u, TileInfo(), 0u);
+}
+
+fn quarter_of(tile: u32, quarter: u32) -> Job {
+    var info: TileInfo;
+    info.nearest = bitcast<f32>(atomicLoad(&infos[tile].nearest));
+    info.farthest = infos[tile].farthest;
+    info.scene = infos[tile].scene;
+    info.first = infos[tile].first;
+    info.slot = infos[tile].slot;
+    let is_waiting = ((atomicLoad(&infos[tile].waiting) >> quarter) & 1u) == 1u;
+    return Job(tile, quarter, info, u32(is_waiting && info.first >= tiles.first && info.first < tiles.end));
 }
 
 fn pixel_at(corner: vec2<u32>, own: u32) -> vec2<u32> {
@@ -98,7 +136,7 @@ fn draw(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32
         let place = place_of(ribbon, line, pixel_at(corner, own));
         let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
         let key = key_of(nearness);
-        if place < 0.0 || place >= 1.0 || nearness < scene[own] || key < unit.low || key >= unit.high {
+        if place < 0.0 || nearness < scene[own] || key < unit.low || key >= unit.high {
             left &= ~(1u << own);
         } else {
             *found = vec2(min((*found).x, key), max((*found).y, key));
@@ -165,12 +203,28 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
 fn blend_sorted(front: Front, pixel: u32) -> Front {
     var blended = front;
     let places = places_of(pixel);
-    for (var i = places.x; i < places.y && blended.transmittance >= tiles.closed_below; i++) {
+    for (var i = places.x; i < places.y && passes(blended) >= tiles.closed_below; i++) {
         let color = color_at(i);
         let alpha = packed_alpha(color);
-        blended = over(blended, packed_color(color), f32(alpha) / OPAQUE, u32(alpha > 0u));
+        @if(!places) { blended = over(blended, packed_color(color), f32(alpha) / OPAQUE, u32(alpha > 0u)); }
+        @if(places) { blended = over(blended, packed_color(color), parts_at(i), u32(alpha > 0u)); }
+        @if(hair_output) {
+            // What comes later is farther: only the first one counts, and the first one that is not faint.
+            if alpha > 0u && (seen == 0u || (seen < NOT_FAINT && alpha >= FAINT)) {
+                seen = seen_key(nearness_of(key_at_place(pixel, i)), alpha);
+            }
+        }
     }
     return blended;
+}
+
+// All fragments of such a unit have one key.
+@if(hair_output)
+fn see_mean(unit: Unit, pixel: u32) {
+    let alpha = largest_alpha(pixel);
+    if alpha > 0u {
+        seen = max(seen, seen_key(nearness_of(unit.low), alpha));
+    }
 }
 
 // Where the quarter begins, and what lies before it.
@@ -181,12 +235,17 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
         scene[lane] = scene_nearness(pixel);
     }
     for (var i = lane; i < SLICES; i += LANES) {
-        bounds[i + 1u] = min(bins[i * tile_count() + own.tile.tile] - tiles.first, tiles.capacity);
+        bounds[i + 1u] = min(bins[i * tile_count() + own.tile] - tiles.first, tiles.capacity);
     }
     empty(lane);
     if lane == 0u {
-        bounds[0] = min(own.tile.first - tiles.first, tiles.capacity);
-        begin = begin_of(own.tile.nearest);
+        bounds[0] = min(own.info.first - tiles.first, tiles.capacity);
+        begin = begin_of(own.info.nearest);
+        last_key = LAST_KEY;
+        if is_cut(own.info) {
+            last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
+        }
+        seen_to = -1.0;
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);
@@ -206,7 +265,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
 
 // Blends all units. Returns what the pixel of the lane has.
 fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
-    var front = NOTHING;
+    var front = nothing_yet();
     loop {
         let unit = workgroupUniformLoad(&plan);
         if unit.first >= SLICES {
@@ -223,17 +282,19 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         if lane < PIXELS && is_blended {
             if unit.is_mean == 1u {
                 front = blend_mean(front, lane);
+                @if(hair_output) { see_mean(unit, lane); }
                 empty_mean(lane);
             } else {
                 front = blend_sorted(front, lane);
             }
-            if front.transmittance < tiles.closed_below {
+            if passes(front) < tiles.closed_below {
                 atomicAnd(&open, ~(1u << lane));
             }
         }
         workgroupBarrier();
         if lane == 0u && atomicLoad(&open) == 0u {
             plan.first = SLICES;
+            seen_to = slice_distance(begin, unit.end);
         }
         empty(lane);
     }
@@ -241,33 +302,53 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
 }
 
 fn blend_quarter(own: Job, lane: u32) {
-    let tile = vec2(own.tile.tile % tile_columns(), own.tile.tile / tile_columns());
+    let tile = vec2(own.tile % tile_columns(), own.tile / tile_columns());
     let corner = TILE * tile + QUARTER * vec2(own.quarter % 2u, own.quarter / 2u);
     prepare(own, corner, lane);
     let front = blend_units(own, corner, lane);
+    let is_done = workgroupUniformLoad(&seen_to) >= 0.0 || !is_cut(own.info);
     let pixel = pixel_at(corner, lane);
-    if lane < PIXELS && all(pixel < view.size) {
-        let color = vec4(front.color, 1.0 - front.transmittance);
-        resolved[pixel.y * view.size.x + pixel.x] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+    if is_done && lane < PIXELS && all(pixel < view.size) {
+        let color = vec4(front.color, 1.0 - passes(front));
+        let place = resolved_index(own.info.slot - 1u, pixel);
+        @if(!hair_output) {
+            resolved[place] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
+        }
+        @if(hair_output) {
+            resolved[3u * place] = pack2x16float(color.rg);
+            resolved[3u * place + 1u] = pack2x16float(color.ba);
+            resolved[3u * place + 2u] = seen;
+        }
         atomicAdd(&hairy_pixels, u32(color.a > 0.0));
         atomicAdd(&blended_fragments, front.fragments);
     }
     workgroupBarrier();
-    if lane == 0u {
-        atomicAdd(&counters.pixels_with_hair, atomicLoad(&hairy_pixels));
-        atomicAdd(&counters.fragments, atomicLoad(&blended_fragments));
+    if is_done && lane == 0u {
+        atomicAdd(&state.counters.pixels_with_hair, atomicLoad(&hairy_pixels));
+        atomicAdd(&state.counters.fragments, atomicLoad(&blended_fragments));
+        atomicMax(&state.hidden[own.tile], hidden_by());
+        atomicAnd(&infos[own.tile].waiting, ~(1u << own.quarter));
     }
+}
+
+// What the hair of the quarter hides, as the next frame is told.
+fn hidden_by() -> u32 {
+    if seen_to < 0.0 {
+        return NOTHING_HIDDEN;
+    }
+    let margin = SEEN_MARGIN * (seen_to - begin) + DEPTH_MARGIN * tiles.depth;
+    return ~bitcast<u32>(max(nearness_at(seen_to + margin), 0.0));
 }
 
 // References that have no room: those behind all rounds, and those of a tile that has more than a round has left for it.
 fn count_dropped(group: u32) {
     if group == 0u && tiles.first == 0u {
-        counters.wanted = queue.references;
-        atomicAdd(&counters.dropped, max(queue.references, tiles.covered) - tiles.covered);
+        state.counters.wanted = max(state.counters.wanted, queue.references);
+        atomicAdd(&state.counters.dropped, max(queue.references, tiles.covered) - tiles.covered);
     }
     if tiles.end != 0xffffffffu && job.quarter == 0u && job.is_now == 1u {
-        let end = min(bins[(SLICES - 1u) * tile_count() + job.tile.tile], tiles.covered) - tiles.first;
-        atomicAdd(&counters.dropped, max(end, tiles.capacity) - tiles.capacity);
+        let end = min(bins[(SLICES - 1u) * tile_count() + job.tile], tiles.covered) - tiles.first;
+        atomicAdd(&state.counters.dropped, max(end, tiles.capacity) - tiles.capacity);
     }
 }
 

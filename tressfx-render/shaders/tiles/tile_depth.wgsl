@@ -1,37 +1,67 @@
-// The nearness of the farthest that the opaque scene shows in each tile: what is behind it is not referred to. Eight lanes a
-// tile, one a row of pixels.
+// What is behind the farthest that the opaque scene shows in a tile is not referred to; nor is, where hair is dense, what was hidden
+// by hair in the frame before, in the tile and in those around it. Whether it is hidden again is seen when the tile is blended. Eight
+// lanes a tile, one a row of pixels and one a neighbour.
 
 import package::grid::GROUP;
 import package::screen::{scene_nearness, view};
-import package::tiles::{TILE, tile_columns, tile_count};
+import package::tile::TILE;
+import package::tiles::{NOTHING_HIDDEN, QUARTERS, TileInfo, ViewState, tile_columns, tile_count, tiles};
 
-@group(0) @binding(6) var<storage, read_write> depths: array<f32>;
+@group(0) @binding(4) var<storage, read_write> state: ViewState;
+@group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
 
 const TILES: u32 = GROUP / TILE;
 
 var<workgroup> farthest: array<atomic<u32>, TILES>;
+var<workgroup> hidden: array<atomic<u32>, TILES>;
+
+// What was hidden in the tile at a place. What is outside of the picture does not matter.
+fn hidden_at(place: vec2<i32>) -> u32 {
+    let columns = i32(tile_columns());
+    if any(place < vec2(0)) || place.x >= columns || place.y * columns + place.x >= i32(tile_count()) {
+        return 0u;
+    }
+    let hidden = atomicLoad(&state.hidden[u32(place.y * columns + place.x)]);
+    return select(hidden, NOTHING_HIDDEN, hidden == 0u);
+}
+
+// One of the eight tiles around a tile.
+fn neighbor(place: vec2<u32>, lane: u32) -> vec2<i32> {
+    // Without the one in the middle.
+    let i = lane + u32(lane >= 4u);
+    return vec2<i32>(place + vec2(i % 3u, i / 3u)) - 1;
+}
 
 @compute @workgroup_size(GROUP)
 fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
               @builtin(local_invocation_index) lane: u32) {
     let own = lane / TILE;
     let tile = (group.y * groups.x + group.x) * TILES + own;
+    let place = vec2(tile % tile_columns(), tile / tile_columns());
     if lane % TILE == 0u {
         atomicStore(&farthest[own], bitcast<u32>(1e30f));
+        atomicStore(&hidden[own], 0u);
     }
     workgroupBarrier();
-    let corner = vec2(tile % tile_columns(), tile / tile_columns()) * TILE;
-    let row = corner.y + lane % TILE;
+    let row = place.y * TILE + lane % TILE;
     if tile < tile_count() && row < view.size.y {
         var nearness = 1e30;
-        for (var x = corner.x; x < min(corner.x + TILE, view.size.x); x++) {
+        for (var x = place.x * TILE; x < min(place.x * TILE + TILE, view.size.x); x++) {
             nearness = min(nearness, scene_nearness(vec2(x, row)));
         }
         // Numbers that are not negative are in the order of their bits.
         atomicMin(&farthest[own], bitcast<u32>(max(nearness, 0.0)));
     }
+    if tile < tile_count() && tiles.skips_hidden == 1u {
+        atomicMax(&hidden[own], max(hidden_at(vec2<i32>(place)), hidden_at(neighbor(place, lane % TILE))));
+    }
     workgroupBarrier();
     if lane % TILE == 0u && tile < tile_count() {
-        depths[tile] = bitcast<f32>(atomicLoad(&farthest[own]));
+        let scene = bitcast<f32>(atomicLoad(&farthest[own]));
+        var seen = scene;
+        if tiles.skips_hidden == 1u {
+            seen = max(scene, bitcast<f32>(~atomicLoad(&hidden[own])));
+        }
+        infos[tile] = TileInfo(0.0, seen, scene, 0u, (1u << QUARTERS) - 1u, 0u);
     }
 }

@@ -2,16 +2,17 @@
 // them; and the nearest vertex of each tile. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
+import package::joint::ROUND;
 import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
-import package::strands::{colors, end_at, positions, section};
-import package::tiles::{TILE, nearness_at, tile_columns};
+import package::strands::{bend_at, end_at, neighbours_of, paint_between, positions, section, tilt_between};
+import package::tile::TILE;
+import package::tiles::{SharedTileInfo, nearness_at, tile_columns};
 
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
+@group(0) @binding(7) var<storage, read_write> paints: array<vec4<u32>>;
 
-// Nearness, a tile: bits of a number that is not negative.
-@group(0) @binding(8) var<storage, read_write> nearests: array<atomic<u32>>;
+@group(0) @binding(8) var<storage, read_write> infos: array<SharedTileInfo>;
 
 // The nearest vertex is looked for among so many strands: it decides about speed alone.
 const SAMPLES: u32 = 8192u;
@@ -29,16 +30,25 @@ fn point_of(end: End) -> vec4<f32> {
     return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
 }
 
+fn paint_of_vertex(strand: u32, vertex: u32) -> vec4<u32> {
+    let beside = neighbours_of(strand, vertex);
+    let bend = bend_at(strand, vertex, beside);
+    let paint = paint_between(bend, strand, vertex, beside);
+    let tilt = select(tilt_between(bend), ROUND, any(beside == vec2(vertex)));
+    return vec4(pack2x16float(paint.rg), pack2x16float(paint.ba), bitcast<u32>(tilt), 0u);
+}
+
 fn note_nearest(point: vec4<f32>) {
     if point.w < 0.0 || any(point.xy < vec2(0.0)) || any(point.xy >= vec2<f32>(view.size)) || point.z <= 0.0 {
         return;
     }
     let tile = vec2<u32>(point.xy) / TILE;
     let place = tile.y * tile_columns() + tile.x;
+    // Numbers that are not negative are in the order of their bits.
     let bits = bitcast<u32>(point.z);
     // Most vertices are not the nearest, and need no turn at the counter.
-    if bits > atomicLoad(&nearests[place]) {
-        atomicMax(&nearests[place], bits);
+    if bits > atomicLoad(&infos[place].nearest) {
+        atomicMax(&infos[place].nearest, bits);
     }
 }
 
@@ -52,7 +62,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     let sound = is_sound(positions[i].xyz);
     let point = select(NOWHERE, point_of(end_at(i % section.strands, i / section.strands)), sound);
     points[i] = point;
-    paints[i] = colors[i];
+    paints[i] = paint_of_vertex(i % section.strands, i / section.strands);
     let step = max(section.strands / SAMPLES, 1u);
     if sound && (i % section.strands) % step == 0u {
         note_nearest(point);

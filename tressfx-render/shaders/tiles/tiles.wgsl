@@ -1,9 +1,9 @@
 // Tiles of the screen, and slices of depth through them: what the kernels of this technique share.
 
+import package::counters::Counters;
 import package::screen::view;
+import package::tile::TILE;
 
-// Pixels along the edge of a tile.
-const TILE: u32 = 8u;
 // Slices of depth; each holds references to the segments that touch it.
 const SLICES: u32 = 64u;
 // Kinds of tiles by the number of their references, the heaviest last.
@@ -36,8 +36,18 @@ struct TilesUniform {
     end: u32,
     // References of all rounds.
     covered: u32,
-    unused_0: u32,
+    // Rounds, and the references with which tiles begin in each of them.
+    rounds: u32,
+    window: u32,
+    // 1 where references leave out what hair has hidden in the frame before.
+    skips_hidden: u32,
+    // Tiles whose resolved pixels have room.
+    slots: u32,
     unused_1: u32,
+    unused_2: u32,
+    // The grids of `tile_bin` and `tile_alloc`.
+    bin_groups: vec4<u32>,
+    alloc_groups: vec4<u32>,
     // Of each section: its first segment, its first vertex, its strands.
     layouts: array<vec4<u32>, MAX_SECTIONS>,
 }
@@ -47,32 +57,73 @@ struct TilesUniform {
 // Groups in a row of the grid that blends tiles.
 const ROW: u32 = 32768u;
 
-// A tile with references.
-struct WaitingTile {
-    tile: u32,
-    // The first reference.
-    first: u32,
+// Grids of groups that `tile_alloc` counts, three numbers each: of `tile_blend`, and of `tile_bin` that stores, in each round.
+const BLEND_GRID: u32 = 0u;
+const STORE_GRIDS: u32 = 3u;
+// Grids for tiles that are blended again: of `tile_bin` that counts, and of `tile_alloc`.
+const COUNT_GRID: u32 = 0u;
+const ALLOC_GRID: u32 = 3u;
+
+// What is known of a tile.
+struct TileInfo {
     // Nearness of the nearest vertex; 0 where there is none.
     nearest: f32,
-    unused: u32,
+    // Nearness of the farthest that is referred to, and of the farthest that the opaque scene shows. The first is larger where
+    // hair has hidden what is behind it in the frame before.
+    farthest: f32,
+    scene: f32,
+    // The first reference.
+    first: u32,
+    // A bit a quarter that is still to be blended.
+    waiting: u32,
+    // Where its resolved pixels are, and one; 0 until the tile is among those that the composite draws.
+    slot: u32,
 }
+
+// The same while many groups come to a tile.
+struct SharedTileInfo {
+    nearest: atomic<u32>,
+    farthest: f32,
+    scene: f32,
+    first: u32,
+    waiting: atomic<u32>,
+    slot: u32,
+}
+
+// What is kept of a view from frame to frame, behind its counters.
+struct ViewState {
+    counters: Counters,
+    // A tile: the complement of the bits of the nearness behind which its hair has hidden all; 0 where nothing is known of it.
+    hidden: array<atomic<u32>>,
+}
+
+// The complement of the bits of nearness 0.
+const NOTHING_HIDDEN: u32 = 0xffffffffu;
 
 // Tiles with references, by class.
 struct Queue {
     // References that all tiles ask for.
     references: atomic<u32>,
-    unused: array<u32, 3>,
+    // Tiles of all classes.
+    size: atomic<u32>,
+    unused: array<u32, 2>,
     sizes: array<atomic<u32>, CLASSES>,
     // Room for all tiles in each class.
-    tiles: array<WaitingTile>,
+    tiles: array<u32>,
 }
 
 // The same where nothing is added any more.
 struct WaitingTiles {
     references: u32,
-    unused: array<u32, 3>,
+    size: u32,
+    unused: array<u32, 2>,
     sizes: array<u32, CLASSES>,
-    tiles: array<WaitingTile>,
+    tiles: array<u32>,
+}
+
+// Whether hair behind some nearness was left out, though the scene shows it.
+fn is_cut(info: TileInfo) -> bool {
+    return info.farthest > info.scene;
 }
 
 fn tile_columns() -> u32 {

@@ -34,6 +34,9 @@ var<workgroup> begin: f32;
 // Where the references of each slice of the tile begin, and where the last ones end.
 var<workgroup> bounds: array<u32, SLICES + 1u>;
 
+// Behind this key not all fragments are found, and none is blended.
+var<workgroup> last_key: u32;
+
 fn key_at(slice: u32) -> u32 {
     return depth_key(max(nearness_at(slice_distance(begin, slice)), 0.0));
 }
@@ -44,9 +47,9 @@ fn first_key(slice: u32) -> u32 {
         return 0u;
     }
     if slice == SLICES {
-        return LAST_KEY;
+        return last_key;
     }
-    return key_at(slice);
+    return min(key_at(slice), last_key);
 }
 
 fn unit_of(first: u32, end: u32, low: u32, high: u32, rate: f32) -> Unit {
@@ -55,7 +58,7 @@ fn unit_of(first: u32, end: u32, low: u32, high: u32, rate: f32) -> Unit {
 
 // As many slices from this one on as should fill the list, at least one, and none from `most` on.
 fn unit_from(first: u32, most: u32, rate: f32) -> Unit {
-    if first == SLICES {
+    if first == SLICES || first_key(first) >= last_key {
         return Unit(SLICES, SLICES, 0u, 0u, vec2(0u), rate, 0u);
     }
     let room = u32(FILL * f32(ENTRIES) / rate);

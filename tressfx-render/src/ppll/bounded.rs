@@ -4,18 +4,21 @@
 //! rest consists of the sums of integers that the tail of a list is made of. So the picture is the same to the bit as that of lists
 //! with room for all, as long as the nearest find room.
 
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::Backend;
 use tressfx_core::error::{Need, Result};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 
 use super::{fill, nearest};
+use crate::output::Output;
 use crate::resolved::{pixels, storage};
 use crate::segments::{Fill, Segments};
 
-/// Bytes of the sums of a pixel: see `rest.wgsl`.
-const REST_BYTES: u64 = 20;
+/// Bytes of the sums of a pixel, and of the key of a depth where depth is written: see `rest.wgsl`.
+fn rest_bytes(output: Output) -> u64 {
+    if output.hair { 24 } else { 20 }
+}
 
 /// What such lists have beside a pool. Kernels are compiled when they are first needed, and kept; memory is freed when it is no
 /// longer needed.
@@ -42,19 +45,20 @@ struct Kernels {
 struct Memory {
     /// `u32` each: the keys of the nearest fragments of a pixel.
     keys: BufferId,
-    /// Five `u32` a pixel.
+    /// Five `u32` a pixel, or six.
     rest: BufferId,
     /// Bytes of both.
     sizes: [u64; 2],
     /// Fragments of a pixel that there are keys for.
     asked: u32,
+    output: Output,
 }
 
 impl Memory {
-    fn new(backend: &mut dyn Backend, size: [u32; 2], asked: u32) -> Result<Self> {
-        let sizes = sizes(size, asked);
+    fn new(backend: &mut dyn Backend, size: [u32; 2], asked: u32, output: Output) -> Result<Self> {
+        let sizes = sizes(size, asked, output);
         let keys = storage(backend, "hair.render.nearest_keys", sizes[0])?;
-        Ok(Self { keys, rest: storage(backend, "hair.render.rest", sizes[1])?, sizes, asked })
+        Ok(Self { keys, rest: storage(backend, "hair.render.rest", sizes[1])?, sizes, asked, output })
     }
 
     fn destroy(self, backend: &mut dyn Backend) {
@@ -62,13 +66,13 @@ impl Memory {
     }
 }
 
-fn sizes(size: [u32; 2], asked: u32) -> [u64; 2] {
-    [4 * u64::from(asked), REST_BYTES].map(|bytes| (bytes * pixels(size)).max(16))
+fn sizes(size: [u32; 2], asked: u32, output: Output) -> [u64; 2] {
+    [4 * u64::from(asked), rest_bytes(output)].map(|bytes| (bytes * pixels(size)).max(16))
 }
 
 /// Whether a device can have such lists for a picture of this size.
-pub(crate) fn check(backend: &dyn Backend, size: [u32; 2], asked: u32) -> Result<()> {
-    let largest = sizes(size, asked).into_iter().max().unwrap_or(0);
+pub(crate) fn check(backend: &dyn Backend, size: [u32; 2], asked: u32, output: Output) -> Result<()> {
+    let largest = sizes(size, asked, output).into_iter().max().unwrap_or(0);
     backend.caps().check("hair.render", &[Need::StorageBuffers(8), Need::StorageBindingBytes(largest)])
 }
 
@@ -85,15 +89,15 @@ impl Bounded {
         size: [u32; 2],
         asked: u32,
         fill: Fill,
-        target: Format,
+        output: Output,
     ) -> Result<Prepared> {
-        check(backend, size, asked)?;
+        check(backend, size, asked, output)?;
         let make = |backend: &mut dyn Backend| {
-            let fill = Segments::new(backend, fill, &fill::SHADERS, &fill::bounded(true), target)?;
+            let fill = Segments::new(backend, fill, &fill::SHADERS, &fill::bounded(true, output), output.color)?;
             Ok(Kernels { nearest: nearest::pass(backend)?, fill })
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
-        Ok(Prepared { kernels, memory: Memory::new(backend, size, asked)? })
+        Ok(Prepared { kernels, memory: Memory::new(backend, size, asked, output)? })
     }
 
     /// Bounds lists with what was prepared.
@@ -155,6 +159,7 @@ impl Bounded {
             keys,
             rest,
             buffers: [memory.keys, memory.rest],
+            rest_bytes: rest_bytes(memory.output),
         })
     }
 }
@@ -166,13 +171,15 @@ pub(crate) struct Passes<'a> {
     pub(crate) keys: (&'static str, Binding),
     pub(crate) rest: (&'static str, Binding),
     buffers: [BufferId; 2],
+    /// Of a pixel.
+    rest_bytes: u64,
 }
 
 impl Passes<'_> {
     /// Empties the memory for a view.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], kept: u32) {
         let [keys, rest] = self.buffers;
-        list.clear(rest, 0, REST_BYTES * pixels(size));
+        list.clear(rest, 0, self.rest_bytes * pixels(size));
         if kept > 0 {
             list.clear(keys, 0, 4 * u64::from(kept) * pixels(size));
         }

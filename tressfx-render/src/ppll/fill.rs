@@ -3,6 +3,7 @@
 use tressfx_core::shader::Specialization;
 
 use super::LIBRARY;
+use crate::output::Output;
 use crate::segments::Shaders;
 
 pub(crate) const SHADERS: Shaders = Shaders {
@@ -12,6 +13,6 @@ pub(crate) const SHADERS: Shaders = Shaders {
 };
 
 /// Whether only the nearest fragments of a pixel have nodes.
-pub(crate) fn bounded(on: bool) -> Specialization {
-    Specialization::new().feature("bounded", on)
+pub(crate) fn bounded(on: bool, output: Output) -> Specialization {
+    output.specialization().feature("bounded", on)
 }

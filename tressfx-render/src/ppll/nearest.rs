@@ -7,7 +7,7 @@ use tressfx_core::shader::Module;
 use crate::segments::Segments;
 use crate::shaders::with_shared;
 
-const LIBRARY: &[Module] = &with_shared::<3, 16>([
+const LIBRARY: &[Module] = &with_shared::<3, 19>([
     ("kept", include_str!("../../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../../shaders/ppll/node.wgsl")),
     ("sink", include_str!("../../shaders/ppll/nearest_sink.wgsl")),

@@ -78,7 +78,7 @@ impl NodePool {
         let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
         let heads = storage(backend, "hair.render.heads", 4 * pixels)?;
-        let counters = ViewCounters::new(backend)?;
+        let counters = ViewCounters::new(backend, 0)?;
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
@@ -150,7 +150,7 @@ impl NodePool {
     /// What it takes for `size` pixels.
     pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
         let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
-        (4 * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::BYTES
+        (4 * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::bytes(0)
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {

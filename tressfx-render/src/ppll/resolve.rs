@@ -11,6 +11,7 @@ use tressfx_core::shader::{Binding, Kernel, Specialization};
 use super::pool::NodePool;
 use super::{LIBRARY, Tail};
 use crate::bound::Bound;
+use crate::output::Output;
 use crate::resolved::{Resolved, TILE};
 use crate::shaders::compute;
 use crate::views::BoundView;
@@ -25,11 +26,13 @@ pub(crate) struct Variant {
     pub(crate) tail: Tail,
     /// Whether there is a rest of fragments without nodes.
     pub(crate) bounded: bool,
+    pub(crate) output: Output,
 }
 
 impl Variant {
     fn specialization(&self) -> Specialization {
-        Specialization::new()
+        self.output
+            .specialization()
             .feature("shaded", self.tail == Tail::Shaded)
             .feature("unshaded", self.tail == Tail::Unshaded)
             .feature("bounded", self.bounded)

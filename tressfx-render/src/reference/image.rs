@@ -6,7 +6,8 @@ use tressfx_core::view::View;
 use super::fill::fill_projected;
 use super::projection::Projection;
 use super::{
-    Fragment, Strands, resolve, resolve_with_tail, shade, shortcut_colors, shortcut_depths, shortcut_resolve, xyz,
+    Fragment, Strands, resolve, resolve_at_places, resolve_with_tail, shade, shortcut_colors, shortcut_depths,
+    shortcut_resolve, xyz,
 };
 use crate::lights::Lights;
 use crate::ppll::Tail;
@@ -14,6 +15,17 @@ use crate::ppll::Tail;
 /// The picture with every fragment kept and put in order.
 pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([u32; 2]) -> f32) -> Vec<DVec4> {
     resolved(view, lights, strands, scene, usize::MAX)
+}
+
+/// The same where light passes four places of a pixel for themselves.
+pub fn exact_at_places(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+) -> Vec<DVec4> {
+    let mut lists = lists(view, lights, strands, scene, 1);
+    lists.iter_mut().map(|list| resolve_at_places(list)).collect()
 }
 
 /// The picture with the `k` nearest fragments of a pixel in order.

@@ -50,7 +50,7 @@ impl Projection {
     }
 
     /// How far a point is behind the near plane; negative where it is nearer.
-    fn behind_near(&self, point: &Point) -> f64 {
+    pub(super) fn behind_near(&self, point: &Point) -> f64 {
         match self.order {
             DepthOrder::Standard => point.clip.z,
             DepthOrder::Reverse => point.clip.w - point.clip.z,

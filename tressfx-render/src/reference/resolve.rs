@@ -29,3 +29,14 @@ pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, tail: Tail, unlit
     }
     color.extend(1.0 - transmittance)
 }
+
+/// The same with all fragments in order, where light passes four places of the pixel for themselves.
+pub fn resolve_at_places(fragments: &mut [Fragment]) -> DVec4 {
+    fragments.sort_by(|a, b| b.nearness.total_cmp(&a.nearness));
+    let (mut color, mut transmittance) = (DVec3::ZERO, DVec4::ONE);
+    for fragment in fragments {
+        color += (transmittance * fragment.parts).element_sum() / 4.0 * fragment.color;
+        transmittance *= DVec4::ONE - fragment.parts;
+    }
+    color.extend(1.0 - transmittance.element_sum() / 4.0)
+}

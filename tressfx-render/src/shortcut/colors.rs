@@ -6,7 +6,7 @@ use tressfx_core::shader::Module;
 use crate::segments::Shaders;
 use crate::shaders::with_shared;
 
-const LIBRARY: &[Module] = &with_shared::<2, 15>([
+const LIBRARY: &[Module] = &with_shared::<2, 18>([
     ("layers", include_str!("../../shaders/shortcut/layers.wgsl")),
     ("sink", include_str!("../../shaders/shortcut/colors_sink.wgsl")),
 ]);

@@ -8,7 +8,8 @@ use tressfx_core::shader::Binding;
 
 use super::ShortCutDesc;
 use crate::counters::ViewCounters;
-use crate::resolved::{Resolved, pixels, storage};
+use crate::output::Output;
+use crate::resolved::{Resolved, pixels, storage, tile_count};
 use crate::views::BoundView;
 
 /// The buffers of ShortCut.
@@ -29,25 +30,26 @@ pub(crate) struct Memory {
     pub(crate) bytes: u64,
 }
 
-/// Bytes of a pixel in `layers`, `opticals`, `fronts` and `resolved`.
-pub(crate) fn bytes_of_pixel(desc: &ShortCutDesc) -> [u64; 4] {
+/// Bytes of a pixel in `layers`, `opticals` and `fronts`.
+pub(crate) fn bytes_of_pixel(desc: &ShortCutDesc) -> [u64; 3] {
     let k = u64::from(desc.k);
-    [4 * k, 4, if desc.ordered { 8 * k } else { 8 }, Resolved::PIXEL_BYTES]
+    [4 * k, 4, if desc.ordered { 8 * k } else { 8 }]
 }
 
 impl Memory {
-    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &ShortCutDesc) -> Result<Self> {
-        let [layers, opticals, fronts, _] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &ShortCutDesc, output: Output) -> Result<Self> {
+        let [layers, opticals, fronts] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
         let name = if desc.ordered { "hair.render.slots" } else { "hair.render.sums" };
+        let resolved = Resolved::new(backend, size, output)?;
         Ok(Self {
             layers: storage(backend, "hair.render.layers", layers)?,
             opticals: storage(backend, "hair.render.opticals", opticals)?,
             fronts: storage(backend, name, fronts)?,
-            resolved: Resolved::new(backend, size)?,
-            counters: ViewCounters::new(backend)?,
+            counters: ViewCounters::new(backend, 0)?,
             bytes: [layers, opticals, fronts].map(|bytes| bytes.max(16)).iter().sum::<u64>()
-                + Resolved::bytes(size)
-                + ViewCounters::BYTES,
+                + resolved.bytes(size)
+                + ViewCounters::bytes(0),
+            resolved,
         })
     }
 
@@ -76,13 +78,13 @@ impl Memory {
 
     /// Empties the pixels of a view.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], desc: &ShortCutDesc) {
-        let [layers, opticals, fronts, resolved] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+        let [layers, opticals, fronts] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
         self.resolved.clear(list);
         list.clear(self.layers, 0, layers);
         list.clear(self.opticals, 0, opticals);
         list.clear(self.fronts, 0, fronts);
         if !desc.ordered {
-            list.clear(self.resolved.colors, 0, resolved);
+            list.clear(self.resolved.colors, 0, self.resolved.output.slot_bytes() * u64::from(tile_count(size)));
         }
     }
 

@@ -8,12 +8,13 @@ use tressfx_core::shader::{Kernel, Module};
 use super::ShortCutDesc;
 use super::memory::Memory;
 use crate::bound::Bound;
+use crate::output::Output;
 use crate::resolved::TILE;
 use crate::shaders::{PIXELS, compute, with_shared};
 use crate::views::BoundView;
 
 const LIBRARY: &[Module] =
-    &with_shared::<2, 15>([PIXELS, ("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
+    &with_shared::<2, 18>([PIXELS, ("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
 
 #[derive(Debug)]
 pub(crate) struct Resolve {
@@ -23,9 +24,9 @@ pub(crate) struct Resolve {
 }
 
 impl Resolve {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShortCutDesc) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShortCutDesc, output: Output) -> Result<Self> {
         let root = ("shortcut_resolve", include_str!("../../shaders/shortcut/shortcut_resolve.wgsl"));
-        let kernel = compute(backend, "hair.render.shortcut_resolve", root, LIBRARY, &desc.specialization())?;
+        let kernel = compute(backend, "hair.render.shortcut_resolve", root, LIBRARY, &desc.specialization(output))?;
         Ok(Self { desc: *desc, kernel, bound: Bound::new() })
     }
 

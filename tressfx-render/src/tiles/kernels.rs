@@ -1,19 +1,20 @@
-//! The kernels of tiles: `hair.render.tile_points`, `tile_depth`, `tile_bin`, `tile_alloc` and `tile_blend`.
+//! The kernels of tiles: `hair.render.tile_depth`, `tile_points`, `tile_bin`, `tile_alloc`, `tile_blend` and `tile_reopen`.
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::{Label, Result};
 use tressfx_core::id::{BufferId, TextureId};
-use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::pass::{Grid, Groups, PassList};
 use tressfx_core::shader::{Binding, Kernel, Module, Specialization};
 
 use super::memory::Memory;
 use crate::bound::Bound;
+use crate::output::Output;
 use crate::resolved::tile_count;
 use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<7, 20>([
+const LIBRARY: &[Module] = &with_shared::<7, 23>([
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     ("front", include_str!("../../shaders/tiles/front.wgsl")),
     ("mean", include_str!("../../shaders/tiles/mean.wgsl")),
@@ -35,51 +36,78 @@ struct Pass<K> {
 
 impl<K: Eq + std::hash::Hash> Pass<K> {
     fn new(backend: &mut dyn Backend, label: Label, root: Module) -> Result<Self> {
-        let kernel = compute(backend, label, root, LIBRARY, &Specialization::new())?;
+        Self::specialized(backend, label, root, &Specialization::new())
+    }
+
+    fn specialized(
+        backend: &mut dyn Backend,
+        label: Label,
+        root: Module,
+        specialization: &Specialization,
+    ) -> Result<Self> {
+        let kernel = compute(backend, label, root, LIBRARY, specialization)?;
         Ok(Self { kernel, bound: Bound::new() })
     }
 
-    /// Runs over a grid.
+    /// Runs so many groups.
     fn record(
         &mut self,
         list: &mut PassList,
         key: (usize, K),
-        grid: Grid,
+        groups: Groups,
         resources: &[(&str, Binding)],
     ) -> Result<()> {
         let bindings = self.bound.get(key, || self.kernel.bind(resources))?;
-        list.compute(&self.kernel, &bindings, grid);
+        match groups {
+            Groups::Grid(grid) => list.compute(&self.kernel, &bindings, grid),
+            Groups::Indirect { buffer, offset } => list.compute_indirect(&self.kernel, &bindings, buffer, offset),
+        }
         Ok(())
     }
 }
 
-/// The kernels in the order in which they run; `bin` runs before and behind `alloc`.
+/// The kernels in the order in which they run; `bin` runs before and behind `alloc`, and behind `reopen` they run again.
 #[derive(Debug)]
 pub(crate) struct Kernels {
-    /// By section and its place.
-    points: Pass<(BufferId, u32)>,
     /// By the scene.
     depth: Pass<TextureId>,
+    /// By section and its place.
+    points: Pass<(BufferId, u32)>,
     /// By the round that it stores, or none.
     bin: Pass<Option<u32>>,
     alloc: Pass<()>,
     /// By the scene and the round.
     blend: Pass<(TextureId, u32)>,
+    reopen: Pass<()>,
+}
+
+/// The groups of `tile_bin`.
+pub(crate) fn bin_grid(segments: u32) -> Grid {
+    Grid::for_threads(segments, GROUP)
+}
+
+/// The groups of `tile_alloc`, and of `tile_depth`.
+pub(crate) fn alloc_grid(size: [u32; 2]) -> Grid {
+    Grid::for_threads(tile_count(size) * LANES_OF_A_TILE, GROUP)
 }
 
 impl Kernels {
-    pub(crate) fn new(backend: &mut dyn Backend) -> Result<Self> {
+    /// Whether light passes the four places of a pixel for themselves is known to `blend` alone.
+    pub(crate) fn new(backend: &mut dyn Backend, output: Output, has_places: bool) -> Result<Self> {
+        let blended = output.specialization().feature("places", has_places);
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));
         let alloc = ("tile_alloc", include_str!("../../shaders/tiles/tile_alloc.wgsl"));
         let blend = ("tile_blend", include_str!("../../shaders/tiles/tile_blend.wgsl"));
+        let reopen = ("tile_reopen", include_str!("../../shaders/tiles/tile_reopen.wgsl"));
         Ok(Self {
             points: Pass::new(backend, "hair.render.tile_points", points)?,
             depth: Pass::new(backend, "hair.render.tile_depth", depth)?,
             bin: Pass::new(backend, "hair.render.tile_bin", bin)?,
             alloc: Pass::new(backend, "hair.render.tile_alloc", alloc)?,
-            blend: Pass::new(backend, "hair.render.tile_blend", blend)?,
+            blend: Pass::specialized(backend, "hair.render.tile_blend", blend, &blended)?,
+            reopen: Pass::new(backend, "hair.render.tile_reopen", reopen)?,
         })
     }
 
@@ -89,6 +117,7 @@ impl Kernels {
         self.bin.bound.begin_frame();
         self.alloc.bound.begin_frame();
         self.blend.bound.begin_frame();
+        self.reopen.bound.begin_frame();
     }
 
     pub(crate) fn forget_bindings(&mut self) {
@@ -97,12 +126,14 @@ impl Kernels {
         self.bin.bound.clear();
         self.alloc.bound.clear();
         self.blend.bound.clear();
+        self.reopen.bound.clear();
     }
 
     #[cfg(test)]
-    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 5] {
-        let Self { points, depth, bin, alloc, blend } = self;
-        [&points.kernel.shader, &depth.kernel.shader, &bin.kernel.shader, &alloc.kernel.shader, &blend.kernel.shader]
+    pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 6] {
+        let Self { points, depth, bin, alloc, blend, reopen } = self;
+        let kernels = [&points.kernel, &depth.kernel, &bin.kernel, &alloc.kernel, &blend.kernel, &reopen.kernel];
+        kernels.map(|kernel| &*kernel.shader)
     }
 
     /// The vertices of a section on the screen, from the place `first` on.
@@ -123,11 +154,11 @@ impl Kernels {
             ("colors", strands.colors.into()),
             ("thickness", strands.buffers.thickness.into()),
             ("points", memory.vertices.points.range(16 * first_vertex, 16 * vertices)),
-            ("paints", memory.vertices.paints.range(8 * first_vertex, 8 * vertices)),
-            ("nearests", memory.screen.nearests.into()),
+            ("paints", memory.vertices.paints.range(16 * first_vertex, 16 * vertices)),
+            ("infos", memory.screen.infos.into()),
         ];
         let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
-        self.points.record(list, (view.index, (strands.colors, first)), grid, &resources)
+        self.points.record(list, (view.index, (strands.colors, first)), Groups::Grid(grid), &resources)
     }
 
     /// The farthest that the scene shows in each tile.
@@ -138,10 +169,14 @@ impl Kernels {
         memory: &Memory,
         scene_depth: TextureId,
     ) -> Result<()> {
-        let resources =
-            [("view", view.uniform), ("scene_depth", scene_depth.into()), ("depths", memory.screen.depths.into())];
-        let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
-        self.depth.record(list, (view.index, scene_depth), grid, &resources)
+        let resources = [
+            ("view", view.uniform),
+            ("tiles", memory.uniform(view.index, None)),
+            ("state", memory.counters.of(view.index).into()),
+            ("scene_depth", scene_depth.into()),
+            ("infos", memory.screen.infos.into()),
+        ];
+        self.depth.record(list, (view.index, scene_depth), Groups::Grid(alloc_grid(view.size)), &resources)
     }
 
     /// The references of each bin: counted, or stored in a round.
@@ -150,36 +185,54 @@ impl Kernels {
         list: &mut PassList,
         view: &BoundView,
         memory: &Memory,
-        segments: u32,
         round: Option<u32>,
+        groups: Groups,
     ) -> Result<()> {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, round)),
             ("points", memory.vertices.points.into()),
-            ("depths", memory.screen.depths.into()),
+            ("paints", memory.vertices.paints.into()),
+            ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
-            ("nearests", memory.screen.nearests.into()),
-            ("firsts", memory.screen.firsts.into()),
         ];
-        self.bin.record(list, (view.index, round), Grid::for_threads(segments, GROUP), &resources)
+        self.bin.record(list, (view.index, round), groups, &resources)
     }
 
     /// Places for the references, and the queue of tiles.
-    pub(crate) fn alloc(&mut self, list: &mut PassList, view: &BoundView, memory: &Memory) -> Result<()> {
+    pub(crate) fn alloc(
+        &mut self,
+        list: &mut PassList,
+        view: &BoundView,
+        memory: &Memory,
+        groups: Groups,
+    ) -> Result<()> {
         let resources = [
             ("view", view.uniform),
+            ("tiles", memory.uniform(view.index, None)),
+            ("state", memory.counters.of(view.index).into()),
             ("bins", memory.screen.bins.into()),
             ("queue", memory.screen.queue.into()),
             ("hairy", memory.screen.resolved.tiles.into()),
             ("tile_vertices", memory.screen.resolved.draw.into()),
-            ("groups_of_tiles", memory.groups.into()),
-            ("firsts", memory.screen.firsts.into()),
-            ("nearests", memory.screen.nearests.into()),
+            ("grids", memory.grids.into()),
+            ("infos", memory.screen.infos.into()),
         ];
-        let grid = Grid::for_threads(tile_count(view.size) * LANES_OF_A_TILE, GROUP);
-        self.alloc.record(list, (view.index, ()), grid, &resources)
+        self.alloc.record(list, (view.index, ()), groups, &resources)
+    }
+
+    /// Tiles in which too much was left out are empty again.
+    pub(crate) fn reopen(&mut self, list: &mut PassList, view: &BoundView, memory: &Memory) -> Result<()> {
+        let resources = [
+            ("view", view.uniform),
+            ("tiles", memory.uniform(view.index, None)),
+            ("infos", memory.screen.infos.into()),
+            ("bins", memory.screen.bins.into()),
+            ("grids_again", memory.grids_again.into()),
+        ];
+        let grid = Grid::for_threads(tile_count(view.size), GROUP);
+        self.reopen.record(list, (view.index, ()), Groups::Grid(grid), &resources)
     }
 
     /// The pixels of the tiles of a round.
@@ -196,16 +249,14 @@ impl Kernels {
             ("tiles", memory.uniform(view.index, Some(round))),
             ("points", memory.vertices.points.into()),
             ("paints", memory.vertices.paints.into()),
-            ("counters", memory.counters.of(view.index).into()),
+            ("state", memory.counters.of(view.index).into()),
             ("scene_depth", scene_depth.into()),
             ("bins", memory.screen.bins.into()),
             ("queue", memory.screen.queue.into()),
             ("references", memory.references.buffer.into()),
             ("resolved", memory.screen.resolved.colors.into()),
+            ("infos", memory.screen.infos.into()),
         ];
-        let bindings =
-            self.blend.bound.get((view.index, (scene_depth, round)), || self.blend.kernel.bind(&resources))?;
-        list.compute_indirect(&self.blend.kernel, &bindings, memory.groups, 0);
-        Ok(())
+        self.blend.record(list, (view.index, (scene_depth, round)), memory.blend_groups(), &resources)
     }
 }

@@ -2,10 +2,12 @@
 
 use tressfx_core::error::{Error, Result};
 use tressfx_core::gpu_struct;
+use tressfx_core::pass::Grid;
 use tressfx_core::view::View;
 
 use super::TilesDesc;
-use super::memory::References;
+use super::kernels::{alloc_grid, bin_grid};
+use super::memory::Memory;
 use crate::strands::SectionDraw;
 
 /// Sections that can be drawn together.
@@ -47,10 +49,22 @@ gpu_struct! {
         pub end: u32,
         /// References of all rounds.
         pub covered: u32,
-        /// Nothing.
-        pub unused_0: u32,
+        /// How many there are.
+        pub rounds: u32,
+        /// References with which tiles begin in each of them.
+        pub window: u32,
+        /// 1 where references leave out what hair has hidden in the frame before, else 0.
+        pub skips_hidden: u32,
+        /// Tiles whose resolved pixels have room.
+        pub slots: u32,
         /// Nothing.
         pub unused_1: u32,
+        /// Nothing.
+        pub unused_2: u32,
+        /// Groups of `tile_bin`, and nothing.
+        pub bin_groups: [u32; 4],
+        /// Groups of `tile_alloc`, and nothing.
+        pub alloc_groups: [u32; 4],
         /// Of each section: its first segment, its first vertex, its strands, nothing.
         pub layouts: [[u32; 4]; MAX_SECTIONS],
     }
@@ -102,8 +116,10 @@ impl Layout {
         view: &View,
         draws: &[SectionDraw],
         desc: &TilesDesc,
-        references: &References,
+        memory: &Memory,
+        skips_hidden: bool,
     ) -> Vec<TilesUniform> {
+        let references = &memory.references;
         let [nearest, farthest] = distances(view, draws);
         let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
             segments: self.segments,
@@ -116,13 +132,23 @@ impl Layout {
             first,
             end,
             covered: references.covered(),
-            unused_0: 0,
+            rounds: references.rounds,
+            window: references.window(),
+            skips_hidden: skips_hidden.into(),
+            slots: memory.screen.resolved.slots,
             unused_1: 0,
+            unused_2: 0,
+            bin_groups: padded(bin_grid(self.segments)),
+            alloc_groups: padded(alloc_grid(view.size())),
             layouts: self.sections,
         };
         let rounds = (0..references.rounds).map(|round| uniform(1, references.round(round)));
         std::iter::once(uniform(0, [0, u32::MAX])).chain(rounds).collect()
     }
+}
+
+fn padded(Grid([x, y, z]): Grid) -> [u32; 4] {
+    [x, y, z, 0]
 }
 
 /// The distances from the plane of the eye between which the sections are expected; the second is larger.

@@ -3,15 +3,17 @@
 use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Groups, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
 use super::TilesDesc;
 use super::layout::{SLICES, TilesUniform};
 use crate::counters::ViewCounters;
+use crate::output::Output;
 use crate::renderer::{HEADROOM, with_headroom};
-use crate::resolved::{Resolved, pixels, storage, tile_count};
+use crate::resolved::{Resolved, storage, tile_count};
+use crate::technique::Wanted;
 use crate::usage::is_surplus;
 use crate::views::MAX_VIEWS;
 
@@ -30,15 +32,33 @@ pub(crate) const MAX_ROUNDS: u32 = 64;
 /// References that there is room for at least, unless fewer are allowed.
 const LEAST_REFERENCES: u32 = 1 << 16;
 
-/// Bytes of a grid of groups.
-const GROUPS_BYTES: u64 = 12;
+/// Tiles whose resolved pixels have room at least.
+const LEAST_SLOTS: u32 = 256;
 
-/// Vertices of all sections, on the screen.
+/// Bytes of a grid of groups.
+const GRID_BYTES: u64 = 12;
+
+/// The grid of `tile_blend`: its number in [`Memory::grids`].
+const BLEND_GRID: u32 = 0;
+
+/// The grid of `tile_bin` that stores in the first round; those of the other rounds follow.
+const STORE_GRIDS: u32 = 1;
+
+/// All of them.
+const GRIDS_BYTES: u64 = GRID_BYTES * (STORE_GRIDS + MAX_ROUNDS) as u64;
+
+/// Those of `tile_bin` that counts and of `tile_alloc`, for tiles that are blended again.
+const AGAIN_BYTES: u64 = 2 * GRID_BYTES;
+
+/// Bytes of what is known of a tile.
+const INFO_BYTES: u64 = 24;
+
+/// Vertices of all sections.
 #[derive(Debug)]
 pub(crate) struct Vertices {
     /// `vec4<f32>` a vertex, see `segments.wgsl`.
     pub(crate) points: BufferId,
-    /// `vec2<u32>` a vertex: four half floats, colour and opacity.
+    /// `vec4<u32>` a vertex: colour and opacity of its surface as four half floats, and its tilt, see `joint.wgsl`.
     pub(crate) paints: BufferId,
     /// How many there is room for.
     pub(crate) count: u64,
@@ -47,7 +67,11 @@ pub(crate) struct Vertices {
 impl Vertices {
     fn new(backend: &mut dyn Backend, count: u64) -> Result<Self> {
         let points = storage(backend, "hair.render.points", 16 * count)?;
-        Ok(Self { points, paints: storage(backend, "hair.render.paints", 8 * count)?, count })
+        Ok(Self { points, paints: storage(backend, "hair.render.paints", 16 * count)?, count })
+    }
+
+    fn bytes(&self) -> u64 {
+        2 * (16 * self.count).max(16)
     }
 }
 
@@ -68,19 +92,20 @@ impl References {
     /// How many references all rounds have room for. In a round, tiles begin in the first half of the room, so that the last one of them
     /// has the other half for itself.
     pub(crate) fn covered(&self) -> u32 {
-        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.window()) }
+        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.half()) }
     }
 
     /// The first reference of a round, and the one after the last with which a tile may begin.
     pub(crate) fn round(&self, round: u32) -> [u32; 2] {
-        if self.rounds == 1 {
-            [0, u32::MAX]
-        } else {
-            [round, round + 1].map(|round| round.saturating_mul(self.window()))
-        }
+        if self.rounds == 1 { [0, u32::MAX] } else { [round, round + 1].map(|round| round.saturating_mul(self.half())) }
     }
 
-    fn window(&self) -> u32 {
+    /// References with which tiles may begin in a round.
+    pub(crate) fn window(&self) -> u32 {
+        if self.rounds == 1 { u32::MAX } else { self.half() }
+    }
+
+    fn half(&self) -> u32 {
         (self.count / 2).max(1)
     }
 
@@ -96,12 +121,8 @@ pub(crate) struct Screen {
     size: [u32; 2],
     /// `u32` a slice of each tile.
     pub(crate) bins: BufferId,
-    /// `f32` a tile: the nearness of the farthest that the scene shows.
-    pub(crate) depths: BufferId,
-    /// `f32` a tile: the nearness of its nearest vertex.
-    pub(crate) nearests: BufferId,
-    /// `u32` a tile: its first reference.
-    pub(crate) firsts: BufferId,
+    /// `TileInfo` a tile.
+    pub(crate) infos: BufferId,
     /// Tiles that have references.
     pub(crate) queue: BufferId,
     /// The colours of the pixels.
@@ -109,36 +130,42 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
-        let [bins, depths, queue] = sizes(size);
+    fn new(backend: &mut dyn Backend, size: [u32; 2], slots: u32, output: Output) -> Result<Self> {
+        let [bins, infos, queue] = sizes(size);
         Ok(Self {
             size,
             bins: storage(backend, "hair.render.bins", bins)?,
-            depths: storage(backend, "hair.render.tile_depths", depths)?,
-            nearests: storage(backend, "hair.render.nearests", depths)?,
-            firsts: storage(backend, "hair.render.firsts", depths)?,
+            infos: storage(backend, "hair.render.tile_infos", infos)?,
             queue: storage(backend, "hair.render.queue", queue)?,
-            resolved: Resolved::new(backend, size)?,
+            resolved: Resolved::with_slots(backend, size, slots.min(tile_count(size)), output)?,
         })
+    }
+
+    fn replace_colors(&mut self, backend: &mut dyn Backend, colors: BufferId, slots: u32) {
+        backend.destroy(std::mem::replace(&mut self.resolved.colors, colors).into());
+        self.resolved.slots = slots;
     }
 
     fn destroy(self, backend: &mut dyn Backend) {
         self.resolved.destroy(backend);
-        [self.bins, self.depths, self.nearests, self.firsts, self.queue]
-            .into_iter()
-            .for_each(|buffer| backend.destroy(buffer.into()));
+        [self.bins, self.infos, self.queue].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
-/// Bytes of bins, depths, which are as many as nearests and firsts, and queue.
+/// Bytes of bins, infos and queue.
 fn sizes(size: [u32; 2]) -> [u64; 3] {
     let tiles = u64::from(tile_count(size));
-    [4 * u64::from(SLICES) * tiles, 4 * tiles, QUEUE_HEADER + 16 * CLASSES * tiles]
+    [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, QUEUE_HEADER + 4 * CLASSES * tiles]
+}
+
+/// Bytes of what is kept of a view from frame to frame: what its hair has hidden in each tile.
+fn kept(size: [u32; 2]) -> u64 {
+    4 * u64::from(tile_count(size))
 }
 
 /// Bytes of the largest buffer that a screen of this size takes.
-pub(crate) fn largest_binding(size: [u32; 2]) -> u64 {
-    sizes(size).into_iter().max().unwrap_or(0).max(Resolved::PIXEL_BYTES * pixels(size))
+pub(crate) fn largest_binding(size: [u32; 2], output: Output) -> u64 {
+    sizes(size).into_iter().max().unwrap_or(0).max(output.slot_bytes() * u64::from(tile_count(size)))
 }
 
 /// The buffers of tiles.
@@ -148,16 +175,20 @@ pub(crate) struct Memory {
     pub(crate) vertices: Vertices,
     pub(crate) references: References,
     pub(crate) screen: Screen,
-    /// The grid of groups that blends tiles.
-    pub(crate) groups: BufferId,
-    /// What is counted of each view.
+    /// Grids of groups that `tile_alloc` counts, one after the other.
+    pub(crate) grids: BufferId,
+    /// Grids for tiles that are blended again.
+    pub(crate) grids_again: BufferId,
+    /// What is counted of each view, and what its hair has hidden.
     pub(crate) counters: ViewCounters,
+    /// Whether nothing is known yet of what was hidden.
+    is_new: bool,
     /// [`TilesUniform`] for counting and for storing, of each view.
     pub(crate) uniforms: UniformArray<TilesUniform>,
 }
 
 impl Memory {
-    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &TilesDesc) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &TilesDesc, output: Output) -> Result<Self> {
         let caps = backend.caps();
         let bytes = desc.max_reference_bytes.min(TilesDesc::MAX_REFERENCE_BYTES);
         let bytes = bytes.min(caps.max_storage_binding_bytes).min(caps.max_buffer_bytes);
@@ -166,9 +197,11 @@ impl Memory {
             most_references,
             vertices: Vertices::new(backend, 0)?,
             references: References::new(backend, most_references.min(LEAST_REFERENCES))?,
-            screen: Screen::new(backend, size)?,
-            groups: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_groups", GROUPS_BYTES))?,
-            counters: ViewCounters::new(backend)?,
+            screen: Screen::new(backend, size, LEAST_SLOTS, output)?,
+            grids: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_grids", GRIDS_BYTES))?,
+            grids_again: backend.create_buffer(&BufferDesc::indirect("hair.render.grids_again", AGAIN_BYTES))?,
+            counters: ViewCounters::new(backend, kept(size))?,
+            is_new: true,
             uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", MAX_VIEWS * UNIFORMS_OF_A_VIEW)?,
         })
     }
@@ -179,13 +212,24 @@ impl Memory {
     }
 
     pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        let screen = Screen::new(backend, size)?;
+        let screen = Screen::new(backend, size, LEAST_SLOTS, self.screen.resolved.output)?;
+        let counters = ViewCounters::new(backend, kept(size))?;
         std::mem::replace(&mut self.screen, screen).destroy(backend);
+        std::mem::replace(&mut self.counters, counters).destroy(backend);
+        self.is_new = true;
         Ok(())
     }
 
-    /// Makes room for `wanted` references, for more than are allowed in rounds, and for `vertices`.
-    pub(crate) fn grow(&mut self, backend: &mut dyn Backend, wanted: u64, vertices: u64) -> Result<()> {
+    /// Makes room for so many references, for more than are allowed in rounds, for tiles, and for `vertices`.
+    pub(crate) fn grow(
+        &mut self,
+        backend: &mut dyn Backend,
+        Wanted { kept: wanted, tiles }: Wanted,
+        vertices: u64,
+    ) -> Result<()> {
+        let slots = tiles.min(tile_count(self.screen.size).into()) as u32;
+        let more = |slots| self.screen.resolved.more_colors(backend, slots);
+        let colors = (slots > self.screen.resolved.slots).then_some(slots).map(more).transpose()?;
         let count = wanted.min(u64::from(self.most_references)) as u32;
         let more = |count| References::new(backend, count);
         let references = (count > self.references.count).then_some(count).map(more).transpose()?;
@@ -198,8 +242,11 @@ impl Memory {
             self.references.rounds = old.rounds;
             backend.destroy(old.buffer.into());
         }
+        if let Some(colors) = colors {
+            self.screen.replace_colors(backend, colors, slots);
+        }
         if wanted > u64::from(self.references.covered()) {
-            let rounds = wanted.div_ceil(u64::from(self.references.window())).min(u64::from(MAX_ROUNDS)) as u32;
+            let rounds = wanted.div_ceil(u64::from(self.references.half())).min(u64::from(MAX_ROUNDS)) as u32;
             self.references.rounds = self.references.rounds.max(rounds);
         }
         Ok(())
@@ -211,7 +258,17 @@ impl Memory {
     }
 
     /// Gives back what is much more than is needed.
-    pub(crate) fn shrink(&mut self, backend: &mut dyn Backend, references: u64, vertices: u64) -> Result<()> {
+    pub(crate) fn shrink(
+        &mut self,
+        backend: &mut dyn Backend,
+        Wanted { kept: references, tiles }: Wanted,
+        vertices: u64,
+    ) -> Result<()> {
+        if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into())) {
+            let slots = with_headroom(tiles).max(LEAST_SLOTS.into()).min(tile_count(self.screen.size).into()) as u32;
+            let colors = self.screen.resolved.more_colors(backend, slots)?;
+            self.screen.replace_colors(backend, colors, slots);
+        }
         let wanted = with_headroom(references).max(LEAST_REFERENCES.into());
         let count = wanted.min(self.most_references.into()) as u32;
         let shrinks = count < self.references.count && is_surplus(self.references.count.into(), references);
@@ -229,12 +286,16 @@ impl Memory {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let [bins, depths, queue] = sizes(self.screen.size);
-        let vertices = [16, 8].map(|bytes| (bytes * self.vertices.count).max(16));
+        let tiles = sizes(self.screen.size).map(|bytes| bytes.max(16)).iter().sum::<u64>();
         let references = (References::BYTES * u64::from(self.references.count)).max(16);
-        let tiles = [bins, depths, depths, depths, queue].map(|bytes| bytes.max(16));
-        let rest = Resolved::bytes(self.screen.size) + GROUPS_BYTES + ViewCounters::BYTES + self.uniforms.bytes();
-        tiles.iter().chain(&vertices).sum::<u64>() + references + rest
+        let views = ViewCounters::bytes(kept(self.screen.size)) + self.uniforms.bytes();
+        tiles
+            + self.vertices.bytes()
+            + references
+            + self.screen.resolved.bytes(self.screen.size)
+            + GRIDS_BYTES
+            + AGAIN_BYTES
+            + views
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
@@ -242,7 +303,7 @@ impl Memory {
         self.counters.destroy(backend);
         self.uniforms.destroy(backend);
         let Vertices { points, paints, .. } = self.vertices;
-        [points, paints, self.references.buffer, self.groups]
+        [points, paints, self.references.buffer, self.grids, self.grids_again]
             .into_iter()
             .for_each(|buffer| backend.destroy(buffer.into()));
     }
@@ -252,12 +313,45 @@ impl Memory {
         self.uniforms.binding(view * UNIFORMS_OF_A_VIEW + round.map_or(0, |round| 1 + round as usize))
     }
 
-    /// Empties bins, nearests and the queue for a view of this size.
+    /// The groups of `tile_blend`.
+    pub(crate) fn blend_groups(&self) -> Groups {
+        grid(self.grids, BLEND_GRID)
+    }
+
+    /// The groups of `tile_bin` that stores in a round.
+    pub(crate) fn store_groups(&self, round: u32) -> Groups {
+        grid(self.grids, STORE_GRIDS + round)
+    }
+
+    /// The groups of `tile_bin` that counts and of `tile_alloc`, for tiles that are blended again.
+    pub(crate) fn groups_again(&self) -> [Groups; 2] {
+        [0, 1].map(|number| grid(self.grids_again, number))
+    }
+
+    /// Begins a frame with so many views.
+    pub(crate) fn begin(&mut self, list: &mut PassList, views: usize) {
+        if std::mem::take(&mut self.is_new) {
+            self.counters.forget(list, kept(self.screen.size));
+        }
+        self.counters.clear(list, views);
+    }
+
+    /// Empties bins and the queue for a view of this size.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
-        list.clear(self.screen.nearests, 0, sizes(size)[1]);
-        list.clear(self.screen.queue, 0, QUEUE_HEADER);
-        list.clear(self.groups, 0, GROUPS_BYTES);
+        self.clear_queue(list);
     }
+
+    /// No tile waits.
+    pub(crate) fn clear_queue(&self, list: &mut PassList) {
+        list.clear(self.screen.queue, 0, QUEUE_HEADER);
+        list.clear(self.grids, 0, GRIDS_BYTES);
+        list.clear(self.grids_again, 0, AGAIN_BYTES);
+    }
+}
+
+/// As many groups as a grid of a buffer has.
+fn grid(buffer: BufferId, number: u32) -> Groups {
+    Groups::Indirect { buffer, offset: GRID_BYTES * u64::from(number) }
 }

@@ -1,0 +1,42 @@
+//! What a renderer draws to.
+
+use tressfx_core::backend::Format;
+use tressfx_core::shader::Specialization;
+
+use crate::resolved::TILE;
+
+/// Format of the depth and coverage of hair, where a renderer writes them: see [`Targets::hair`](crate::Targets::hair).
+pub const HAIR_FORMAT: Format = Format::Rg32F;
+
+/// The targets that a technique is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Output {
+    /// Format of the picture.
+    pub(crate) color: Format,
+    /// Whether depth and coverage of the hair are written too.
+    pub(crate) hair: bool,
+}
+
+impl Output {
+    /// Bytes that a technique leaves for each pixel: colour and alpha, and a key of the depth.
+    fn pixel_bytes(self) -> u64 {
+        if self.hair { 12 } else { 8 }
+    }
+
+    /// Bytes that it leaves for each tile.
+    pub(crate) fn slot_bytes(self) -> u64 {
+        self.pixel_bytes() * u64::from(TILE * TILE)
+    }
+
+    /// What the kernels that write or read such a pixel are compiled for.
+    pub(crate) fn specialization(self) -> Specialization {
+        Specialization::new().feature("hair_output", self.hair)
+    }
+}
+
+impl From<Format> for Output {
+    /// The picture alone.
+    fn from(color: Format) -> Self {
+        Self { color, hair: false }
+    }
+}

@@ -1,0 +1,66 @@
+//! How much of a pixel a strand covers.
+
+use glam::{DVec2, DVec4};
+
+/// The half-widths of the base and of the flat top of a unit square, seen across a line with the unit normal `normal`.
+fn reach(normal: DVec2) -> [f64; 2] {
+    let n = normal.abs();
+    [0.5 * (n.x + n.y), 0.5 * (n.x - n.y).abs()]
+}
+
+/// Area of a unit square within `half_width` of a line with the unit normal `normal` that passes at `distance` from its
+/// centre.
+pub fn coverage(distance: f64, half_width: f64, normal: DVec2) -> f64 {
+    let [base, top] = reach(normal);
+    // Area on one side of the line, less one half.
+    let side = |distance: f64| {
+        let x = distance.abs().min(base);
+        let missing = if x > top { (x - top) * (x - top) / (2.0 * (base - top)) } else { 0.0 };
+        (x - missing).copysign(distance) / (base + top)
+    };
+    (side(distance + half_width) - side(distance - half_width)).max(0.0)
+}
+
+/// How high a round fibre rises before its axis where a pixel at `distance` sees it: the mean of two points (Gauss).
+pub(super) fn rise(distance: f64, half_width: f64) -> f64 {
+    let [low, high] = [distance - 0.5, distance + 0.5].map(|edge| edge.clamp(-half_width, half_width));
+    let gauss = 0.5 / 3f64.sqrt();
+    let at = |t: f64| {
+        let across = low + (high - low) * t;
+        (half_width * half_width - across * across).max(0.0).sqrt()
+    };
+    0.5 * (at(0.5 - gauss) + at(0.5 + gauss))
+}
+
+/// How long a pixel is taken along a line with the unit normal `normal`: as long as it is in the middle.
+pub(super) fn pixel_length(normal: DVec2) -> f64 {
+    reach(normal).iter().sum()
+}
+
+/// The share of a pixel between two ends that are so far before and behind its centre. The pixel is as long as `length` along them.
+pub(super) fn between(before: f64, behind: f64, length: f64) -> f64 {
+    let share = |end: f64| (end / length + 0.5).clamp(0.0, 1.0);
+    (share(before) + share(behind) - 1.0).max(0.0)
+}
+
+/// Four places in a pixel, from its centre.
+const PLACES: [DVec2; 4] =
+    [DVec2::new(-0.125, -0.375), DVec2::new(0.375, -0.125), DVec2::new(0.125, 0.375), DVec2::new(-0.375, 0.125)];
+
+/// Shares of four places within `half_width` of a line as in [`coverage`], so that their mean is `covered`: all of them smaller by
+/// one factor than their intervals across the line, or what they leave free.
+pub(super) fn parts(distance: f64, half_width: f64, normal: DVec2, covered: f64) -> DVec4 {
+    let reach = 0.125 * normal.abs().element_sum();
+    let share = |place: DVec2| {
+        let across = distance + place.dot(normal);
+        let [low, high] = [(across - reach).max(-half_width), (across + reach).min(half_width)];
+        (high - low).max(0.0) / (2.0 * reach)
+    };
+    let shares = DVec4::from_array(PLACES.map(share));
+    let mean = shares.element_sum() / 4.0;
+    if covered > mean {
+        DVec4::ONE - (DVec4::ONE - shares) * ((1.0 - covered) / (1.0 - mean).max(1e-12))
+    } else {
+        shares * (covered / mean.max(1e-12))
+    }
+}

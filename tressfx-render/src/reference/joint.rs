@@ -1,0 +1,75 @@
+//! How a strand goes on at a vertex, as the eye sees it.
+
+use std::f64::consts::FRAC_PI_4;
+
+use glam::{DVec2, DVec4};
+
+use super::Strands;
+use super::projection::Projection;
+
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Joint {
+    /// Not at all.
+    Round,
+    /// With the tangent of half the angle by which it turns on the screen.
+    Turn(f64),
+}
+
+impl Joint {
+    pub(super) const AHEAD: Self = Self::Turn(0.0);
+    /// The largest tangent of a turn that is not sharp.
+    const SHARP: f64 = 0.42;
+    /// Pixels by which a segment goes on behind its round end at a sharp turn.
+    const ELBOW: f64 = 0.75;
+
+    /// At a vertex.
+    pub(super) fn at(projection: &Projection, strands: &Strands, strand: u32, vertex: u32) -> Self {
+        let (Some(before), Some(after)) = (strands.before(strand, vertex), strands.after(strand, vertex)) else {
+            return Self::Round;
+        };
+        let points =
+            [before, vertex, after].map(|vertex| projection.point(strands.posed(strands.index(strand, vertex))));
+        if points.iter().any(|point| projection.behind_near(point) <= 0.0) {
+            return Self::AHEAD;
+        }
+        let [before, middle, after] = points.map(|point| projection.pixel(&point));
+        let (own, next) = (middle - before, after - middle);
+        let ahead = own.length() * next.length() + own.dot(next);
+        Self::Turn((own.perp_dot(next) / ahead.max(1e-30)).clamp(-1e3, 1e3))
+    }
+
+    pub(super) fn is_sharp(self) -> bool {
+        matches!(self, Self::Round) || matches!(self, Self::Turn(tilt) if tilt.abs() > Self::SHARP)
+    }
+
+    /// How far the segment goes on behind its round end.
+    pub(super) fn slack(self) -> f64 {
+        match self {
+            Self::Round => 0.0,
+            _ if self.is_sharp() => Self::ELBOW,
+            Self::Turn(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether a point is behind the bisector, if there is one: so far along a segment from its end and across it, where `side` is 1,
+    /// or from its start, where it is -1.
+    pub(super) fn is_behind(self, at: DVec2, side: f64) -> Option<bool> {
+        match self {
+            Self::Round => None,
+            Self::Turn(tilt) => Some(at.x + side * tilt * at.y >= 0.0),
+        }
+    }
+}
+
+/// Colour and opacity of the surface that is seen at a vertex: those of the axis where the surface is as high as in the mean.
+pub(super) fn paint(projection: &Projection, strands: &Strands, colors: &[DVec4], strand: u32, vertex: u32) -> DVec4 {
+    let place = |vertex: u32| strands.posed(strands.index(strand, vertex));
+    let before = strands.before(strand, vertex).unwrap_or(vertex);
+    let after = strands.after(strand, vertex).unwrap_or(vertex);
+    let point = place(vertex);
+    let (tangent, ray) = (place(after) - place(before), projection.towards_eye(point));
+    let rise = FRAC_PI_4 * strands.radius(strand, vertex) * tangent.dot(ray) / tangent.cross(ray).length().max(1e-15);
+    let next = if rise > 0.0 { after } else { before };
+    let share = (rise.abs() / place(next).distance(point).max(1e-15)).min(1.0);
+    colors[strands.index(strand, vertex)].lerp(colors[strands.index(strand, next)], share)
+}
