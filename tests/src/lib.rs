@@ -13,6 +13,7 @@ pub mod embed;
 pub mod failing;
 pub mod faulty;
 pub mod render;
+pub mod rod;
 pub mod rules;
 pub mod scene;
 pub mod show;

@@ -8,8 +8,8 @@ use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
-    Technique, ViewDraw, reference, uniforms,
+    Counters, HAIR_FORMAT, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
+    StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
 };
 
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -121,7 +121,12 @@ pub struct Picture {
     pub bytes: Vec<u8>,
     /// What was counted.
     pub counters: Counters,
+    /// Depth and coverage of the hair, where they were drawn; [`NO_HAIR`] elsewhere.
+    pub hair: Vec<[f32; 2]>,
 }
+
+/// What pixels without hair are cleared to: neither a depth nor a coverage.
+pub const NO_HAIR: [f32; 2] = [-7.0, -9.0];
 
 impl Picture {
     /// The texels, row by row.
@@ -165,6 +170,8 @@ pub struct Setup {
     pub size: [u32; 2],
     /// The technique.
     pub technique: Technique,
+    /// Whether depth and coverage of the hair are drawn too.
+    pub hair_output: bool,
 }
 
 impl Setup {
@@ -191,8 +198,20 @@ impl Default for Setup {
             far: 50.0,
             depth: DepthOrder::Reverse,
         };
-        Self { camera, size: [96, 64], technique: Technique::default() }
+        Self { camera, size: [96, 64], technique: Technique::default(), hair_output: false }
     }
+}
+
+fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
+    let desc = RenderDesc::new(setup.size, Format::Rgba16F).technique(setup.technique);
+    let desc = desc.hair_output(setup.hair_output);
+    HairRenderer::new(backend, &desc).expect("a renderer")
+}
+
+/// A picture and its depth.
+fn targets(backend: &mut dyn Run, size: [u32; 2]) -> [TextureId; 2] {
+    [("test.color", Format::Rgba16F), ("test.depth", Format::Depth32F)]
+        .map(|(label, format)| backend.create_texture(&TextureDesc::new(label, size, format)).expect("a texture"))
 }
 
 /// A screen to draw on.
@@ -207,8 +226,13 @@ pub struct Screen {
     pub renderer: HairRenderer,
     /// Whether the pool of fragments may grow to what is predicted.
     pub may_grow: bool,
+    /// Renderers of other techniques: their pipelines take long to compile.
+    kept: Vec<HairRenderer>,
+    /// What draws meshes, by the order of depth.
+    scenes: Vec<(DepthOrder, ScenePass)>,
     color: TextureId,
     depth: TextureId,
+    hair: Option<TextureId>,
 }
 
 impl Screen {
@@ -219,19 +243,45 @@ impl Screen {
     pub fn new(mut backend: Box<dyn Run>, change: impl FnOnce(&mut Setup)) -> Self {
         let mut setup = Setup::default();
         change(&mut setup);
-        let Setup { camera, size, technique } = setup;
-        let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);
-        let renderer = HairRenderer::new(&mut *backend, &desc).expect("a renderer");
-        let mut texture =
-            |label, format| backend.create_texture(&TextureDesc::new(label, size, format)).expect("a texture");
-        let (color, depth) = (texture("test.color", Format::Rgba16F), texture("test.depth", Format::Depth32F));
+        let Setup { camera, size, .. } = setup;
+        let renderer = renderer(&mut *backend, &setup);
+        let [color, depth] = targets(&mut *backend, size);
+        let hair = TextureDesc::new("test.hair", size, HAIR_FORMAT);
+        let hair = setup.hair_output.then(|| backend.create_texture(&hair).expect("a texture"));
         let view = camera.view(size).expect("a view");
-        Self { backend, view, lights: lights(), renderer, may_grow: true, color, depth }
+        let (kept, scenes) = (Vec::new(), Vec::new());
+        Self { backend, view, lights: lights(), renderer, may_grow: true, kept, scenes, color, depth, hair }
+    }
+
+    /// Another camera, size or technique on the same device. What was compiled is kept; pools begin anew.
+    ///
+    /// # Panics
+    /// If the backend refuses what it asks for, or if depth and coverage of hair are drawn.
+    pub fn turn_to(&mut self, setup: &Setup) {
+        assert!(self.hair.is_none() && !setup.hair_output, "depth and coverage of hair need a screen of their own");
+        let &Setup { camera, size, technique, .. } = setup;
+        let backend = &mut *self.backend;
+        if self.view.viewport().target() != size {
+            [self.color, self.depth].into_iter().for_each(|texture| backend.destroy(texture.into()));
+            [self.color, self.depth] = targets(backend, size);
+        }
+        self.view = camera.view(size).expect("a view");
+        // A renderer says itself which techniques it can change to.
+        if self.renderer.retune(backend, technique).is_err() {
+            let fits = self.kept.iter_mut().position(|kept| kept.retune(backend, technique).is_ok());
+            let other = match fits {
+                Some(index) => self.kept.swap_remove(index),
+                None => renderer(backend, setup),
+            };
+            self.kept.push(std::mem::replace(&mut self.renderer, other));
+        }
+        self.renderer.resize(backend, size).expect("a size");
     }
 
     /// What is drawn to.
     pub fn targets(&self) -> Targets {
-        Targets::new(self.color, self.depth)
+        let targets = Targets::new(self.color, self.depth);
+        self.hair.map_or(targets, |hair| targets.hair(hair))
     }
 
     /// The picture in f64, with all fragments in order and nothing behind them.
@@ -243,11 +293,16 @@ impl Screen {
 
     /// Uploads a groom with the next run of `list`.
     pub fn section(&mut self, list: &mut PassList, groom: &Groom) -> ShadedStrands {
+        self.placed(list, groom).1
+    }
+
+    fn placed(&mut self, list: &mut PassList, groom: &Groom) -> (StrandBuffers, ShadedStrands) {
         let buffers = StrandBuffers::new(&mut *self.backend, groom.shape, Vec3::ZERO).expect("buffers");
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
-        ShadedStrands::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section")
+        let section = ShadedStrands::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section");
+        (buffers, section)
     }
 
     /// Hair over nothing.
@@ -266,13 +321,19 @@ impl Screen {
 
     /// Hair and meshes.
     pub fn scene(&mut self, meshes: &[&Mesh], grooms: &[&Groom]) -> Picture {
-        let mut list = PassList::new();
-        let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, self.view.depth()).expect("a scene pass");
+        let (mut list, targets, view) = (PassList::new(), self.targets(), self.view);
+        let order = view.depth();
+        if !self.scenes.iter().any(|(of, _)| *of == order) {
+            let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, order).expect("a scene pass");
+            self.scenes.push((order, pass));
+        }
         let made: Vec<_> =
             meshes.iter().map(|mesh| SceneMesh::new(&mut *self.backend, &mut list, mesh).expect("a mesh")).collect();
-        pass.draw(&mut list, &self.view, glam::Mat4::IDENTITY, &self.targets(), &made);
-        let view = self.view;
-        self.over(list, &[view], grooms)
+        let (_, pass) = self.scenes.iter().find(|(of, _)| *of == order).expect("it has just been made");
+        pass.draw(&mut list, &view, glam::Mat4::IDENTITY, &targets, &made);
+        let picture = self.over(list, &[view], grooms);
+        made.into_iter().for_each(|mesh| mesh.destroy(&mut *self.backend));
+        picture
     }
 
     /// Bytes that the backend holds.
@@ -288,23 +349,39 @@ impl Screen {
     }
 
     fn over(&mut self, mut list: PassList, views: &[View], grooms: &[&Groom]) -> Picture {
-        let sections: Vec<_> = grooms.iter().map(|groom| self.section(&mut list, groom)).collect();
+        let sections: Vec<_> = grooms.iter().map(|groom| self.placed(&mut list, groom)).collect();
         let pairs = sections.iter().zip(grooms);
         let draws: Vec<_> =
-            pairs.map(|(strands, groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
+            pairs.map(|((_, strands), groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
         if self.may_grow {
             views
                 .iter()
                 .for_each(|view| self.renderer.grow_to_predicted(&mut *self.backend, view, &draws).expect("a pool"));
         }
         let targets = self.targets();
+        let hair = self.hair;
+        hair.into_iter().for_each(|hair| clear_hair(&mut list, hair));
         let drawn: Vec<_> = views.iter().map(|view| ViewDraw::new(view, &self.lights, targets)).collect();
         self.renderer.draw(&mut list, &drawn, &draws).expect("views that can be drawn");
         let counters = self.renderer.request_counters(&mut list, 0);
         let picture = list.read_texture(self.color);
         let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
         let counters = Counters::from_bytes(&self.backend.read(counters).ready().expect("it has run"));
-        sections.into_iter().for_each(|section| section.destroy(&mut *self.backend));
-        Picture { size: self.view.size(), bytes, counters }
+        for (buffers, section) in sections {
+            section.destroy(&mut *self.backend);
+            buffers.destroy(&mut *self.backend);
+        }
+        let hair = hair.map_or_else(Vec::new, |hair| {
+            let mut list = PassList::new();
+            let ticket = list.read_texture(hair);
+            bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut *self.backend, &list, ticket))
+        });
+        Picture { size: self.view.size(), bytes, counters, hair }
     }
+}
+
+/// Writes [`NO_HAIR`] to every pixel.
+fn clear_hair(list: &mut PassList, hair: TextureId) {
+    let [depth, coverage] = NO_HAIR;
+    list.raster(RasterPass::new("test.clear_hair").color(hair, Load::Clear([depth, coverage, 0.0, 0.0])));
 }

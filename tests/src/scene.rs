@@ -68,6 +68,11 @@ impl SceneMesh {
         list.upload(made.indices, 0, &mesh.indices);
         Ok(made)
     }
+
+    /// Frees its buffers.
+    pub fn destroy(self, backend: &mut dyn Backend) {
+        [self.vertices, self.indices, self.place].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+    }
 }
 
 /// Clears the targets and draws meshes.

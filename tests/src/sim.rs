@@ -11,7 +11,9 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands, relative_to};
 use tressfx_core::view::Pose;
 use tressfx_sim::step::Step;
-use tressfx_sim::{CapsuleMotion, Collider, HairSim, SectionDesc, SimParams, Stage, StepInput, StepReport, Wind};
+use tressfx_sim::{
+    CapsuleMotion, Collider, HairSim, SectionDesc, SimParams, Solver, Stage, StepInput, StepReport, Wind,
+};
 
 /// A simulation and the GPU that it runs on.
 pub struct Rig {
@@ -45,6 +47,17 @@ impl Rig {
     /// If the simulation cannot be made.
     pub fn with_own_roots(mut backend: Box<dyn Run>, strands: Strands, params: SimParams) -> Self {
         let desc = SectionDesc::new(&strands, params).with_own_roots();
+        let (sim, list) = Self::simulation(&mut *backend, &[desc], 0);
+        backend.run(&list).expect("the uploads run");
+        Self { backend, sim, strands: vec![strands], capsules: Vec::new() }
+    }
+
+    /// A simulation of one section that this solver moves.
+    ///
+    /// # Panics
+    /// If the simulation cannot be made.
+    pub fn with_solver(mut backend: Box<dyn Run>, strands: Strands, params: SimParams, solver: Solver) -> Self {
+        let desc = SectionDesc::new(&strands, params).with_solver(solver);
         let (sim, list) = Self::simulation(&mut *backend, &[desc], 0);
         backend.run(&list).expect("the uploads run");
         Self { backend, sim, strands: vec![strands], capsules: Vec::new() }

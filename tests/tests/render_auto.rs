@@ -3,17 +3,10 @@
 mod support;
 
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
-use tressfx_render::{AutoDesc, Counters, Material, PpllDesc, Technique, TilesDesc};
+use tressfx_render::{AutoDesc, Counters, PpllDesc, Technique, TilesDesc};
 
+use support::hair::material;
 use support::screen;
-
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 /// Tiles from eight fragments a pixel on, on every device.
 fn auto() -> AutoDesc {

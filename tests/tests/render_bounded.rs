@@ -4,17 +4,10 @@ mod support;
 
 use glam::{DVec3, DVec4, Vec3};
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
-use tressfx_render::{Counters, Fill, Material, PpllDesc, Tail, reference};
+use tressfx_render::{Counters, Fill, PpllDesc, Tail, reference};
 
+use support::hair::material;
 use support::screen;
-
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 fn lists(desc: PpllDesc) -> impl FnOnce(&mut Setup) {
     move |setup| setup.technique = desc.into()

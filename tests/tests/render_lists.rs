@@ -4,19 +4,12 @@ mod support;
 
 use glam::DVec4;
 use tressfx_conformance::render::{Groom, Screen};
-use tressfx_render::{Fill, K_RANGE, Material, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc, reference};
+use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc, reference};
 
+use support::hair::material;
 use support::screen;
 
 const TAILS: [Tail; 3] = [Tail::Shaded, Tail::Unshaded, Tail::None];
-
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 fn in_f64(screen: &Screen, grooms: &[&Groom], k: u32, tail: Tail) -> Vec<DVec4> {
     let far = screen.view.depth().far();

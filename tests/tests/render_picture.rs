@@ -5,18 +5,10 @@ mod support;
 use glam::DVec4;
 use tressfx_conformance::render::{Difference, Groom, Screen};
 use tressfx_core::view::Pose;
-use tressfx_render::{Material, reference};
+use tressfx_render::reference;
 
+use support::hair::material;
 use support::screen;
-
-/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 fn nothing(screen: &Screen) -> impl Fn([u32; 2]) -> f32 + use<> {
     let far = screen.view.depth().far();

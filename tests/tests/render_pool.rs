@@ -11,17 +11,10 @@ use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Camera, Pose};
-use tressfx_render::{HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, Targets, ViewDraw};
+use tressfx_render::{HairRenderer, Lights, RenderDesc, SectionDraw, ShadedStrands, Targets, ViewDraw};
 
+use support::hair::material;
 use support::screen;
-
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 #[test]
 fn a_pool_that_has_not_grown_yet_drops_exactly_what_it_has_no_room_for() {

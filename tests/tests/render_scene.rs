@@ -6,17 +6,10 @@ use glam::{DVec4, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
-use tressfx_render::{Material, reference};
+use tressfx_render::reference;
 
+use support::hair::material;
 use support::screen;
-
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-    })
-}
 
 /// A square across the line of sight, with its left edge at `left`.
 fn wall(left: f32, z: f32) -> Mesh {

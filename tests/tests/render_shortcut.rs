@@ -9,20 +9,10 @@ use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Counters, Material, ShortCutDesc, reference};
 
-use support::hair::is_sound;
+use support::hair::{is_sound, varied};
 use support::screen;
 
 const VARIANTS: [(u32, bool); 6] = [(1, false), (3, false), (8, false), (1, true), (3, true), (8, true)];
-
-/// Hair of about a third of a pixel on the test's screen, half of which is opaque.
-fn material() -> Material {
-    Material::default().with(|m| {
-        m.fibre_radius = Some(0.005);
-        m.opacity = 0.7;
-        m.tip_opacity = 0.5;
-        m.variation = 1.0;
-    })
-}
 
 fn shortcut(k: u32, ordered: bool) -> impl FnOnce(&mut Setup) {
     move |setup| setup.technique = ShortCutDesc::default().k(k).ordered(ordered).into()
@@ -37,7 +27,7 @@ fn in_f64(screen: &Screen, grooms: &[&Groom], k: u32, ordered: bool) -> Vec<DVec
 
 #[test]
 fn each_variant_is_as_in_f64() {
-    let groom = Groom::wavy(1500, 16, 3, material());
+    let groom = Groom::wavy(1500, 16, 3, varied());
     for (k, ordered) in VARIANTS {
         let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
         let picture = screen.hair(&[&groom]);
@@ -57,7 +47,7 @@ fn each_variant_is_as_in_f64() {
 
 #[test]
 fn order_and_more_layers_come_closer_to_the_exact_picture() {
-    let groom = Groom::wavy(1500, 16, 4, material());
+    let groom = Groom::wavy(1500, 16, 4, varied());
     let mut psnr = Vec::new();
     for (k, ordered) in [(1, true), (3, true), (8, true), (8, false)] {
         let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
@@ -70,7 +60,7 @@ fn order_and_more_layers_come_closer_to_the_exact_picture() {
 
 #[test]
 fn fragments_are_counted_as_in_the_lists() {
-    let groom = Groom::wavy(300, 16, 2, material());
+    let groom = Groom::wavy(300, 16, 2, varied());
     let Some(mut lists) = screen(|_| ()) else { return };
     let expected = Counters { wanted: 0, ..lists.hair(&[&groom]).counters };
     for (k, ordered) in VARIANTS {
@@ -81,8 +71,8 @@ fn fragments_are_counted_as_in_the_lists() {
 
 #[test]
 fn twice_the_same_picture_to_the_bit_whatever_the_order_of_sections() {
-    let groom = Groom::wavy(6000, 16, 6, material());
-    let (one, other) = (Groom::wavy(60, 12, 7, material()), Groom::wavy(40, 20, 8, material()));
+    let groom = Groom::wavy(6000, 16, 6, varied());
+    let (one, other) = (Groom::wavy(60, 12, 7, varied()), Groom::wavy(40, 20, 8, varied()));
     for (k, ordered) in VARIANTS {
         let variant = shortcut(k, ordered);
         let Some(mut screen) = screen(|setup| {
@@ -107,7 +97,7 @@ fn strands_of_one_depth_are_the_same_in_every_order() {
         let x = (i % 40) as f32 / 40.0 - 0.5;
         (0..4).map(|v| Vec3::new(x + 0.01 * (i / 40) as f32, 0.5 - 0.3 * v as f32, 0.0)).collect()
     };
-    let half = |from: u32| Groom::new(&(from..from + 60).map(strand).collect::<Vec<_>>(), material());
+    let half = |from: u32| Groom::new(&(from..from + 60).map(strand).collect::<Vec<_>>(), varied());
     let (one, other) = (half(0), half(60));
     for (k, ordered) in VARIANTS {
         let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
@@ -129,7 +119,7 @@ fn wall() -> Mesh {
 
 #[test]
 fn hair_behind_the_scene_is_left_out_and_the_depth_of_the_scene_is_untouched() {
-    let groom = Groom::wavy(300, 16, 2, material());
+    let groom = Groom::wavy(300, 16, 2, varied());
     for (order, ordered) in [(DepthOrder::Reverse, false), (DepthOrder::Standard, true)] {
         let (variant, wall) = (shortcut(3, ordered), wall());
         let Some(mut lists) = screen(|setup| setup.camera.depth = order) else { return };
@@ -177,7 +167,7 @@ fn hair_that_is_not_there_leaves_the_picture_as_it_was() {
     for (k, ordered) in VARIANTS {
         let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
         let clear = strip(0.0, Vec3::X, 0.0);
-        let none = [screen.hair(&[&clear]), screen.hair(&[&Groom::new(&[], material())]), screen.hair(&[])];
+        let none = [screen.hair(&[&clear]), screen.hair(&[&Groom::new(&[], varied())]), screen.hair(&[])];
         for picture in none {
             assert!(picture.bytes.iter().all(|&byte| byte == 0) && picture.counters.fragments == 0);
         }
@@ -189,7 +179,7 @@ fn hair_that_is_not_there_leaves_the_picture_as_it_was() {
 
 #[test]
 fn odd_screens_and_wide_strands_and_an_eye_within_the_hair() {
-    let groom = Groom::wavy(300, 16, 2, material());
+    let groom = Groom::wavy(300, 16, 2, varied());
     for (k, ordered) in VARIANTS {
         for (size, limit) in [([1, 1], 1), ([16384, 1], 100), ([1, 300], 100), ([7, 9], 60)] {
             let variant = shortcut(k, ordered);
@@ -215,7 +205,7 @@ fn odd_screens_and_wide_strands_and_an_eye_within_the_hair() {
             return;
         };
         for radius in [0.0, 1e-6, 0.01, 3.0] {
-            let wide = Groom { material: material().with(|m| m.fibre_radius = Some(radius)), ..groom.clone() };
+            let wide = Groom { material: varied().with(|m| m.fibre_radius = Some(radius)), ..groom.clone() };
             let picture = screen.hair(&[&wide]);
             assert!(is_sound(&picture), "radius {radius}");
             assert_eq!(picture.counters.fragments > 0, radius > 0.0, "radius {radius}: {:?}", picture.counters);
@@ -246,7 +236,7 @@ fn sums_that_overflow_stay_full() {
 
 #[test]
 fn a_second_view_and_a_new_size_draw_as_a_renderer_of_their_own() {
-    let groom = Groom::wavy(200, 16, 5, material());
+    let groom = Groom::wavy(200, 16, 5, varied());
     for ordered in [false, true] {
         let Some(mut fresh) = screen(shortcut(3, ordered)) else { return };
         let expected = fresh.hair(&[&groom]);
@@ -267,7 +257,7 @@ fn a_second_view_and_a_new_size_draw_as_a_renderer_of_their_own() {
 
 #[test]
 fn views_of_one_frame_are_as_each_alone() {
-    let groom = Groom::wavy(200, 16, 5, material());
+    let groom = Groom::wavy(200, 16, 5, varied());
     for (k, ordered) in [(3, false), (3, true)] {
         let Some(mut screen) = screen(shortcut(k, ordered)) else { return };
         let (camera, depth) = ((screen.view.view_matrix(), screen.view.projection_matrix()), screen.view.depth());

@@ -51,7 +51,7 @@ impl Rig {
 }
 
 fn techniques() -> [Technique; 2] {
-    [PpllDesc::default().into(), TilesDesc::default().into()]
+    [PpllDesc::default().into(), TilesDesc::default().skips_hidden(false).into()]
 }
 
 #[test]

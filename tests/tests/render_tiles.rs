@@ -14,7 +14,7 @@ use tressfx_core::shader::Binding;
 use tressfx_core::view::Pose;
 use tressfx_render::{Counters, SectionDraw, TilesDesc, ViewDraw, reference};
 
-use support::hair::{endless, faint, material, tiles};
+use support::hair::{endless, faint, tiles, varied};
 use support::screen;
 
 /// As near as half floats can come.
@@ -26,8 +26,8 @@ fn rounded(exact: &[DVec4]) -> Vec<DVec4> {
 #[test]
 fn loose_and_dense_hair_is_as_in_exact_order() {
     let grooms = [
-        ("loose", Groom::wavy(60, 12, 1, material()), [96, 64], 2.0),
-        ("dense", Groom::wavy(1500, 16, 3, material()), [96, 64], 30.0),
+        ("loose", Groom::wavy(60, 12, 1, varied()), [96, 64], 2.0),
+        ("dense", Groom::wavy(1500, 16, 3, varied()), [96, 64], 30.0),
         ("faint", Groom::wavy(6000, 16, 4, faint()), [48, 32], 250.0),
     ];
     for (name, groom, size, in_a_pixel) in grooms {
@@ -43,14 +43,15 @@ fn loose_and_dense_hair_is_as_in_exact_order() {
             let brightest = exact.iter().map(|pixel| pixel.max_element()).fold(1.0, f64::max);
             let most = f64::from(closed_below) * brightest + 0.0004;
             assert!(difference.max < most, "{name}: {difference:?}, {most}");
-            assert!(closed_below > 0.0 || difference.psnr > best.psnr - 2.5, "{name}: {difference:?}, {best:?}");
+            // Colours are rounded to half floats twice: where they are shaded, and as those of the surface.
+            assert!(closed_below > 0.0 || difference.psnr > best.psnr - 3.5, "{name}: {difference:?}, {best:?}");
         }
     }
 }
 
 #[test]
 fn a_pixel_is_closed_where_less_passes_than_was_asked_for() {
-    let groom = Groom::wavy(1500, 16, 3, material());
+    let groom = Groom::wavy(1500, 16, 3, varied());
     let mut last = (0, 0.0);
     for closed_below in [2.0, 0.1, 0.001, 0.0] {
         let technique = TilesDesc::default().closed_below(closed_below).into();
@@ -65,7 +66,7 @@ fn a_pixel_is_closed_where_less_passes_than_was_asked_for() {
 
 #[test]
 fn the_same_bits_every_time_and_on_both_backends_whatever_the_order_of_sections() {
-    let (groom, hazy) = (Groom::wavy(6000, 16, 6, material()), Groom::wavy(800, 12, 7, faint()));
+    let (groom, hazy) = (Groom::wavy(6000, 16, 6, varied()), Groom::wavy(800, 12, 7, faint()));
     let mut pictures: Vec<[Picture; 2]> = Vec::new();
     for vulkan in [false, true] {
         let large = |setup: &mut Setup| {
@@ -97,7 +98,7 @@ fn too_many_fragments_of_one_depth_are_their_mean() {
         |z: f32| -> Vec<Vec3> { (0..4).map(|v| Vec3::new(0.3 * v as f32 - 0.45, 0.0, z * (v as f32 - 1.5))).collect() };
     // In one plane before the eye, and through many depths.
     for (z, opacity) in [(0.0, 0.004), (0.1, 0.004), (0.1, 0.5), (0.0, 1.0)] {
-        let material = material().with(|m| {
+        let material = varied().with(|m| {
             m.fibre_radius = Some(0.02);
             (m.opacity, m.tip_opacity) = (opacity, opacity);
         });
@@ -110,8 +111,9 @@ fn too_many_fragments_of_one_depth_are_their_mean() {
         let difference = picture.difference(&mean);
         eprintln!("z {z}, opacity {opacity}: {difference:?}, {:?}", picture.counters);
         assert!(mean.iter().filter(|pixel| pixel.w > 0.5).count() > 40);
-        // The sums are rounded: colours to 1/65536, optical depths to 1/16384.
-        assert!(difference.max < 0.004, "{difference:?}");
+        // The sums are rounded: colours to 1/65536, optical depths to 1/16384, which where a round end covers little of a pixel is much
+        // of each of a thousand.
+        assert!(difference.max < 0.02 && difference.psnr > 70.0, "{difference:?}");
         assert!(screen.hair(&[&groom]).bytes == picture.bytes);
     }
 }
@@ -149,12 +151,24 @@ fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, 
 fn tile_points_leaves_vertices_on_the_screen() {
     let Some(mut screen) = screen(tiles) else { return };
     let pose = Pose { rotation: glam::Quat::from_rotation_y(0.8), translation: Vec3::new(0.1, -0.1, 0.2) };
-    let mut groom = Groom { pose, ..Groom::wavy(37, 12, 9, material().with(|m| m.tip_width = 0.3)) };
+    let mut groom = Groom { pose, ..Groom::wavy(37, 12, 9, varied().with(|m| m.tip_width = 0.3)) };
     groom.positions[5][1] = f32::NAN;
     let (label, count) = ("hair.render.tile_points", groom.positions.len() as u64);
-    let names = [(label, "points", 4 * count), (label, "paints", 2 * count), (label, "colors", 2 * count)];
+    let names = [(label, "points", 4 * count), (label, "paints", 4 * count), (label, "colors", 2 * count)];
     let [points, paints, colors] = read(&mut screen, &[&groom], names);
-    assert!(paints == colors && colors.iter().any(|&color| color != 0));
+    assert!(colors.iter().any(|&color| color != 0));
+    let half = |word: u32, shift: u32| half::f16::from_bits((word >> shift) as u16).to_f64();
+    let color = |words: &[u32]| DVec4::from_array([(0, 0), (0, 16), (1, 0), (1, 16)].map(|(i, at)| half(words[i], at)));
+    let own: Vec<DVec4> = colors.chunks(2).map(color).collect();
+    for (i, paint) in paints.chunks(4).enumerate() {
+        let beside = [i.saturating_sub(37), i, (i + 37).min(own.len() - 1)].map(|vertex| own[vertex]);
+        let (low, high) = (beside.into_iter().reduce(DVec4::min), beside.into_iter().reduce(DVec4::max));
+        let (found, rounding) = (color(paint), DVec4::splat(0.001));
+        assert!(found.cmpge(low.unwrap() - rounding).all() && found.cmple(high.unwrap() + rounding).all(), "{found}");
+        let tilt = f32::from_bits(paint[2]);
+        let is_end = !(37..37 * 11).contains(&i) || i == 5 + 37;
+        assert!(i == 5 || if is_end { tilt == 1e9 } else { tilt.abs() < 0.5 }, "vertex {i}: {tilt}");
+    }
     let lens = screen.view.lens();
     let to_eye = lens.to_eye.as_dmat4() * groom.pose.matrix().as_dmat4();
     for (i, point) in points.chunks(4).enumerate() {
@@ -198,49 +212,47 @@ fn tile_depth_leaves_the_farthest_that_the_scene_shows() {
         let tile = &mut farthest[y / 8 * 12 + x / 8];
         *tile = tile.min(nearness.max(0.0));
     }
-    let groom = Groom::wavy(20, 4, 1, material());
-    let [depths] = read(&mut screen, &[&groom], [("hair.render.tile_depth", "depths", 96)]);
+    let groom = Groom::wavy(20, 4, 1, varied());
+    let [infos] = read(&mut screen, &[&groom], [("hair.render.tile_depth", "infos", 6 * 96)]);
     let (nearest, nothing) =
         (farthest.iter().copied().fold(0.0, f64::max), farthest.iter().copied().fold(1.0, f64::min));
     assert!(nearest > 0.3 && nothing < 0.03, "some tiles are hidden whole, others are not: {nearest}, {nothing}");
-    for (found, expected) in depths.into_iter().map(f32::from_bits).zip(farthest) {
-        assert!((f64::from(found) - expected).abs() <= 1e-6 * expected, "{found} is not {expected}");
+    for (info, expected) in infos.chunks(6).zip(farthest) {
+        let [seen, scene] = [1, 2].map(|at| f32::from_bits(info[at]));
+        assert!((f64::from(scene) - expected).abs() <= 1e-6 * expected, "{scene} is not {expected}");
+        assert_eq!(seen, scene, "nothing was hidden before the first frame");
     }
 }
 
 /// The tiles that the fragments of each segment lie in, by its first vertex, in f64.
 fn touched(screen: &Screen, groom: &Groom, depth: &[f32]) -> HashSet<(u32, u32)> {
-    let (strands, vertices) = (groom.shape.guides, groom.shape.vertices);
     let mut pairs = HashSet::new();
-    for start in 0..strands * (vertices - 1) {
-        let place = |vertex: u32| Vec3::from_slice(&groom.positions[(start + vertex * strands) as usize][..3]);
-        let mut segment = Groom::new(&[vec![place(0), place(1)]], groom.material);
-        segment.thickness = vec![groom.thickness[start as usize], groom.thickness[(start + strands) as usize]];
-        let scene = |[x, y]: [u32; 2]| depth[(y * ODD[0] + x) as usize];
-        reference::fill(&screen.view, &segment.reference(), &[DVec4::ONE; 2], &scene, &mut |fragment| {
-            pairs.insert((fragment.pixel[1] / 8 * 12 + fragment.pixel[0] / 8, start));
-        });
-    }
+    let scene = |[x, y]: [u32; 2]| depth[(y * ODD[0] + x) as usize];
+    let colors = vec![DVec4::ONE; groom.positions.len()];
+    reference::fill(&screen.view, &groom.reference(), &colors, &scene, &mut |fragment| {
+        pairs.insert((fragment.pixel[1] / 8 * 12 + fragment.pixel[0] / 8, fragment.segment));
+    });
     pairs
 }
 
 #[test]
 fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place() {
     let Some(mut screen) = screen(odd) else { return };
-    let groom = Groom::wavy(400, 12, 3, material());
+    let groom = Groom::wavy(400, 12, 3, varied());
     screen.scene(&[&roof()], &[]);
     let depth = screen.depth();
     let names = [
         ("hair.render.tile_bin", "bins", 64 * 96),
         ("hair.render.tile_bin", "references", u64::from(1u32 << 16)),
-        ("hair.render.tile_alloc", "queue", 12 + 4 * 8 * 96),
+        ("hair.render.tile_alloc", "queue", 12 + 8 * 96),
+        ("hair.render.tile_alloc", "infos", 6 * 96),
     ];
-    let [bins, references, queue] = read(&mut screen, &[&groom], names);
+    let [bins, references, queue, infos] = read(&mut screen, &[&groom], names);
     let wanted = queue[0];
-    let classes = queue[4..12].iter().enumerate();
-    let waiting: Vec<_> = classes
-        .flat_map(|(class, &size)| (0..size as usize).map(move |i| 12 + 4 * (class * 96 + i)))
-        .map(|at| (queue[at], queue[at + 1]))
+    let (sizes, tiles) = (&queue[4..12], &queue[12..]);
+    let waiting: Vec<_> = (sizes.iter().zip(tiles.chunks(96)))
+        .flat_map(|(&size, tiles)| &tiles[..size as usize])
+        .map(|&tile| (tile, infos[6 * tile as usize + 3]))
         .collect();
     let mut places: Vec<_> = waiting.iter().map(|&(tile, first)| (first, bins[63 * 96 + tile as usize])).collect();
     places.sort_unstable();
@@ -263,7 +275,7 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
 #[test]
 fn what_is_outside_of_the_picture_is_in_no_tile() {
     let Some(mut screen) = screen(odd) else { return };
-    let inside = Groom::wavy(200, 12, 3, material());
+    let inside = Groom::wavy(200, 12, 3, varied());
     assert!(screen.hair(&[&inside]).counters.wanted > 1000);
     for offset in [[-6.0, 0.0], [6.0, 0.0], [0.0, -6.0], [0.0, 6.0], [-6.0, 6.0], [6.0, -6.0]] {
         let mut outside = inside.clone();
@@ -277,7 +289,7 @@ fn what_is_outside_of_the_picture_is_in_no_tile() {
 
 #[test]
 fn tile_blend_makes_each_fragment_once() {
-    for (groom, size) in [(Groom::wavy(300, 16, 2, material()), ODD), (Groom::wavy(3000, 16, 4, faint()), [48, 32])] {
+    for (groom, size) in [(Groom::wavy(300, 16, 2, varied()), ODD), (Groom::wavy(3000, 16, 4, faint()), [48, 32])] {
         let Some(mut lists) = screen(|setup| setup.size = size) else { return };
         let Some(mut screen) = screen(|setup| {
             endless(setup);
@@ -285,13 +297,55 @@ fn tile_blend_makes_each_fragment_once() {
         }) else {
             return;
         };
-        let [resolved] =
-            read(&mut screen, &[&groom], [("hair.render.tile_blend", "resolved", u64::from(2 * size[0] * size[1]))]);
-        assert!(bytemuck::cast_slice::<_, u8>(&resolved) == screen.hair(&[&groom]).bytes, "what lies over nothing");
+        let tiles = u64::from(size[0].div_ceil(8) * size[1].div_ceil(8));
+        let [resolved, listed, draw] = read(
+            &mut screen,
+            &[&groom],
+            [
+                ("hair.render.tile_blend", "resolved", 128 * tiles),
+                ("hair.render.tile_alloc", "hairy", 2 * tiles),
+                ("hair.render.tile_alloc", "tile_vertices", 4),
+            ],
+        );
+        let mut colors = vec![[0u32; 2]; (size[0] * size[1]) as usize];
+        for listed in listed.chunks(2).take((draw[0] / 6) as usize) {
+            let corner = [listed[0] % size[0].div_ceil(8), listed[0] / size[0].div_ceil(8)].map(|at| 8 * at);
+            for (i, color) in resolved[128 * listed[1] as usize..][..128].chunks(2).enumerate() {
+                let [x, y] = [corner[0] + i as u32 % 8, corner[1] + i as u32 / 8];
+                if x < size[0] && y < size[1] {
+                    colors[(y * size[0] + x) as usize] = [color[0], color[1]];
+                }
+            }
+        }
+        assert!(bytemuck::cast_slice::<_, u8>(&colors) == screen.hair(&[&groom]).bytes, "what lies over nothing");
         for meshes in [&[][..], &[&roof()]] {
             let (all, found) = (lists.scene(meshes, &[&groom]).counters, screen.scene(meshes, &[&groom]).counters);
             assert_eq!(all.dropped, 0);
             assert_eq!((found.fragments, found.pixels_with_hair), (all.fragments, all.pixels_with_hair));
         }
     }
+}
+
+#[test]
+fn tile_reopen_puts_back_tiles_that_let_light_through() {
+    let technique = TilesDesc::default().skips_hidden(true).into();
+    let Some(mut screen) = screen(|setup| (setup.technique, setup.size) = (technique, ODD)) else { return };
+    let dense = Groom::wavy(6000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)));
+    let far = Groom::wavy(300, 16, 8, varied());
+    screen.hair(&[&dense, &far]);
+    let label = "hair.render.tile_reopen";
+    let names = [(label, "grids_again", 6), (label, "infos", 6 * 96)];
+    let [grids, infos] = read(&mut screen, &[&dense, &far], names);
+    let counts = |infos: &[u32]| {
+        let (seen, scene) = (|info: &[u32]| f32::from_bits(info[1]), |info: &[u32]| f32::from_bits(info[2]));
+        let back = infos.chunks(6).filter(|info| seen(info) == scene(info)).count();
+        let done = infos.chunks(6).filter(|info| seen(info) == 1e30 && info[4] == 0).count();
+        assert_eq!(back + done, 96, "each tile is either put back or done");
+        back
+    };
+    assert_eq!((grids, counts(&infos)), (vec![0; 6], 0), "what was hidden is hidden again");
+    let [grids, infos] = read(&mut screen, &[&far], names);
+    let back = counts(&infos);
+    assert!(back > 5 && grids.iter().all(|&groups| groups > 0), "{back} tiles, {grids:?}");
+    assert!(infos.chunks(6).all(|info| info[4] == 0), "all of them have been blended by now");
 }

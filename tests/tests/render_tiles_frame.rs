@@ -10,12 +10,12 @@ use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Counters, reference};
 
-use support::hair::{endless, faint, material, tiles};
+use support::hair::{endless, faint, tiles, varied};
 use support::screen;
 
 #[test]
 fn sections_are_sorted_against_each_other() {
-    let blue = material().with(|m| (m.base_color, m.tip_color) = (Vec3::Z, Vec3::Z));
+    let blue = varied().with(|m| (m.base_color, m.tip_color) = (Vec3::Z, Vec3::Z));
     let grooms: Vec<_> =
         (0..5).map(|i| Groom::wavy(40 + i, 9 + 2 * i, i, if i % 2 == 0 { blue } else { faint() })).collect();
     let grooms: Vec<_> = grooms.iter().collect();
@@ -33,7 +33,7 @@ fn sections_are_sorted_against_each_other() {
 
 #[test]
 fn any_lens_and_both_orders_of_depth() {
-    let groom = Groom::wavy(300, 12, 1, material());
+    let groom = Groom::wavy(300, 12, 1, varied());
     let eye = rh::view::look_at_mat4(Vec3::new(0.6, 0.4, 2.9), Vec3::ZERO, Vec3::Y);
     use rh::proj::directx::{frustum, orthographic, perspective, perspective_infinite_reverse};
     let lenses = [
@@ -70,7 +70,7 @@ fn wall(left: f32, z: f32) -> Mesh {
 
 #[test]
 fn a_scene_hides_what_is_behind_it() {
-    let groom = Groom::wavy(300, 16, 2, material());
+    let groom = Groom::wavy(300, 16, 2, varied());
     for order in [DepthOrder::Standard, DepthOrder::Reverse] {
         let Some(mut screen) = screen(|setup| {
             endless(setup);
@@ -98,7 +98,7 @@ fn a_scene_hides_what_is_behind_it() {
 
 #[test]
 fn views_of_one_frame_are_as_each_alone() {
-    let groom = Groom::wavy(200, 16, 5, material());
+    let groom = Groom::wavy(200, 16, 5, varied());
     let Some(mut screen) = screen(tiles) else { return };
     let (camera, depth) = ((screen.view.view_matrix(), screen.view.projection_matrix()), screen.view.depth());
     let of = |offset, size| {
@@ -115,7 +115,7 @@ fn views_of_one_frame_are_as_each_alone() {
 
 #[test]
 fn a_new_size_draws_as_a_new_renderer() {
-    let groom = Groom::wavy(200, 16, 5, material());
+    let groom = Groom::wavy(200, 16, 5, varied());
     let Some(mut fresh) = screen(tiles) else { return };
     let expected = fresh.hair(&[&groom]);
     let Some(mut screen) = screen(tiles) else { return };

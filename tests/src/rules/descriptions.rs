@@ -156,7 +156,7 @@ fn pipelines(backend: &mut dyn Backend, caps: &Caps, answers: &mut Answers) {
     hold("no colour", nothing().target(Format::Rgba8, Blend::Replace), "the shader gives nothing");
     let two = white().target(Format::Rgba8, Blend::Replace).target(Format::Rgba8, Blend::Replace);
     hold("a target that the shader does not give", two, "target 1");
-    for format in [Format::R32F, Format::R32Uint] {
+    for format in [Format::Rg32F, Format::R32F, Format::R32Uint] {
         for blend in [Blend::Over, Blend::Add, Blend::Multiply, Blend::Min, Blend::Max] {
             let shader = if format.is_uint() { uint() } else { white() };
             hold(&format!("{format:?} with {blend:?}"), shader.target(format, blend), "does not blend");

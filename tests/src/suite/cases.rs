@@ -192,6 +192,7 @@ macro_rules! each_case {
                 rgb10a2: [Raster ReadBack];
                 r16f: [Raster ReadBack];
                 rg16f: [Raster ReadBack];
+                rg32f: [Raster ReadBack];
                 r32f: [Raster ReadBack];
                 r11g11b10f_is_drawn_to_or_refused: [Raster ReadBack];
                 r32_uint_is_cleared_and_drawn: [Raster ReadBack];

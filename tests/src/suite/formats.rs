@@ -89,6 +89,10 @@ pub(super) fn rg16f(t: &mut Subject) {
     cleared_and_drawn(t, Format::Rg16F);
 }
 
+pub(super) fn rg32f(t: &mut Subject) {
+    cleared_and_drawn(t, Format::Rg32F);
+}
+
 pub(super) fn r32f(t: &mut Subject) {
     cleared_and_drawn(t, Format::R32F);
 }
@@ -203,7 +207,7 @@ pub(super) fn every_format_is_copied_to_and_loaded(t: &mut Subject) {
         let found = t.words(output, 4).into_iter().map(f32::from_bits);
         let holds = match format {
             Format::R16F | Format::R32F => 1,
-            Format::Rg16F => 2,
+            Format::Rg16F | Format::Rg32F => 2,
             Format::R11G11B10F => 3,
             _ => 4,
         };

@@ -22,6 +22,7 @@ pub(super) fn encode(format: Format, color: [f32; 4]) -> Vec<u8> {
             (r | g << 10 | b << 20 | unorm(a, 3.0) << 30).to_le_bytes().to_vec()
         }
         Format::R11G11B10F => (unsigned(r, 6) | unsigned(g, 6) << 11 | unsigned(b, 5) << 22).to_le_bytes().to_vec(),
+        Format::Rg32F => [r, g].map(f32::to_le_bytes).concat(),
         Format::R32F | Format::Depth32F => r.to_le_bytes().to_vec(),
         Format::R32Uint => (r as u32).to_le_bytes().to_vec(),
         other => panic!("the suite does not know {other:?} yet"),
@@ -30,7 +31,8 @@ pub(super) fn encode(format: Format, color: [f32; 4]) -> Vec<u8> {
 
 /// The channels of a texel as numbers, of which neighbours are one rounding apart.
 pub(super) fn steps(format: Format, texel: &[u8]) -> Vec<i64> {
-    let word = || i64::from(u32::from_le_bytes([texel[0], texel[1], texel[2], texel[3]]));
+    let words = || texel.chunks(4).map(|word| i64::from(u32::from_le_bytes([word[0], word[1], word[2], word[3]])));
+    let word = || words().next().expect("a texel of at least four bytes");
     let fields = |ends: &[u32]| ends.windows(2).map(|pair| (word() >> pair[0]) % (1 << (pair[1] - pair[0]))).collect();
     match format {
         Format::Rgba16F | Format::Rg16F | Format::R16F => {
@@ -38,7 +40,7 @@ pub(super) fn steps(format: Format, texel: &[u8]) -> Vec<i64> {
         }
         Format::Rgb10A2 => fields(&[0, 10, 20, 30, 32]),
         Format::R11G11B10F => fields(&[0, 11, 22, 32]),
-        Format::R32F | Format::R32Uint | Format::Depth32F => vec![word()],
+        Format::Rg32F | Format::R32F | Format::R32Uint | Format::Depth32F => words().collect(),
         _ => texel.iter().map(|&byte| i64::from(byte)).collect(),
     }
 }

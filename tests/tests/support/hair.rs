@@ -1,4 +1,4 @@
-//! Hair and settings that several tests of tiles share.
+//! Hair and settings that several tests of rendering share.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use tressfx_conformance::render::{Picture, Setup};
@@ -10,13 +10,17 @@ pub(crate) fn material() -> Material {
         m.fibre_radius = Some(0.005);
         m.opacity = 0.7;
         m.tip_opacity = 0.5;
-        m.variation = 1.0;
     })
+}
+
+/// The same with a colour of its own for each strand, so that a wrong order is seen.
+pub(crate) fn varied() -> Material {
+    material().with(|m| m.variation = 1.0)
 }
 
 /// Hair through which hundreds of fragments of a pixel are seen.
 pub(crate) fn faint() -> Material {
-    material().with(|m| {
+    varied().with(|m| {
         m.fibre_radius = Some(0.01);
         (m.opacity, m.tip_opacity) = (0.03, 0.02);
     })

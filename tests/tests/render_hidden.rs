@@ -1,0 +1,110 @@
+//! What hair hides from frame to frame is left out of tiles, and the picture is the same, to the bit.
+
+mod support;
+
+use glam::Vec3;
+use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
+use tressfx_core::view::Pose;
+use tressfx_render::{Counters, TilesDesc};
+
+use support::hair::varied;
+use support::screen;
+
+/// Tiles that leave out what was hidden, or do not.
+fn tiles(skips: bool) -> impl Fn(&mut Setup) {
+    move |setup| (setup.technique, setup.size) = (TilesDesc::default().skips_hidden(skips).into(), [125, 90])
+}
+
+/// Hair through which nothing is seen in its middle.
+fn dense() -> Groom {
+    Groom::wavy(6000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)))
+}
+
+/// Both pictures of a frame, the one without what was hidden first.
+fn both(screens: &mut [Screen; 2], grooms: &[&Groom]) -> [Picture; 2] {
+    let [skipping, drawing] = screens;
+    let pictures = [skipping.hair(grooms), drawing.hair(grooms)];
+    assert!(pictures[0].bytes == pictures[1].bytes, "{:?}", pictures[0].difference(&pictures[1].pixels()));
+    let seen = |of: &Picture| Counters { wanted: 0, ..of.counters };
+    assert_eq!(seen(&pictures[0]), seen(&pictures[1]), "what is seen is counted once");
+    pictures
+}
+
+fn screens() -> Option<[Screen; 2]> {
+    Some([screen(tiles(true))?, screen(tiles(false))?])
+}
+
+#[test]
+fn hair_behind_dense_hair_is_not_referred_to() {
+    let Some(mut screens) = screens() else { return };
+    let groom = dense();
+    let [first, all] = both(&mut screens, &[&groom]);
+    assert_eq!(first.counters.wanted, all.counters.wanted, "nothing is known of the first frame");
+    for _ in 0..3 {
+        let [picture, _] = both(&mut screens, &[&groom]);
+        let (some, all) = (picture.counters.wanted, all.counters.wanted);
+        eprintln!("{some} of {all}");
+        assert!(some < all * 9 / 10, "{some} of {all}");
+    }
+}
+
+#[test]
+fn what_comes_into_sight_again_is_drawn() {
+    let Some(mut screens) = screens() else { return };
+    let groom = dense();
+    let near = Groom { pose: Pose { translation: Vec3::new(0.0, 0.0, 0.9), ..Pose::IDENTITY }, ..dense() };
+    let far = Groom::wavy(900, 16, 8, varied());
+    let wanted = |pictures: [Picture; 2]| pictures.map(|picture| picture.counters.wanted);
+    // It stands, moves, jumps aside, goes, comes back, and another one comes before it.
+    both(&mut screens, &[&groom, &far]);
+    let at = |x: f32, y: f32| Groom { pose: Pose { translation: Vec3::new(x, y, 0.0), ..Pose::IDENTITY }, ..dense() };
+    for step in 1..6 {
+        both(&mut screens, &[&at(0.01 * step as f32, 0.0), &far]);
+    }
+    let [some, all] = wanted(both(&mut screens, &[&at(0.05, 0.0), &far]));
+    assert!(some < all);
+    for groom in [&at(0.5, 0.2), &at(-0.7, 0.0), &at(3.0, 0.0), &groom, &groom, &near, &groom] {
+        both(&mut screens, &[groom, &far]);
+    }
+    both(&mut screens, &[&far]);
+    both(&mut screens, &[&far]);
+    both(&mut screens, &[&groom, &far]);
+}
+
+#[test]
+fn what_is_left_out_makes_room_and_rounds_do_not_matter() {
+    let (groom, far) = (dense(), Groom::wavy(900, 16, 8, varied()));
+    let Some(mut roomy) = screen(tiles(false)) else { return };
+    let all = roomy.hair(&[&groom, &far]);
+    let few = TilesDesc::default().max_reference_bytes(u64::from(all.counters.wanted)).skips_hidden(true);
+    let Some(mut screen) = screen(|setup| (setup.technique, setup.size) = (few.into(), [125, 90])) else { return };
+    let first = screen.hair(&[&groom, &far]);
+    screen.renderer.grow_to_measured(&mut *screen.backend, &first.counters).unwrap();
+    for frame in 0..4 {
+        let picture = screen.hair(&[&groom, &far]);
+        assert!(picture.bytes == all.bytes && picture.counters.dropped == 0, "{frame}: {:?}", picture.counters);
+    }
+    let expected = roomy.hair(&[&far]);
+    assert!(screen.hair(&[&far]).bytes == expected.bytes);
+}
+
+#[test]
+fn it_is_done_where_hair_is_dense() {
+    let groom = Groom::wavy(12_000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)));
+    let technique = TilesDesc::default();
+    // The hair fills the picture.
+    let close = |setup: &mut Setup| {
+        (setup.technique, setup.size) = (technique.into(), [61, 45]);
+        setup.camera.fov *= 0.3;
+    };
+    let Some(mut screen) = screen(close) else { return };
+    let mut wanted = Vec::new();
+    let first = screen.hair(&[&groom]);
+    for _ in 0..3 {
+        let picture = screen.hair(&[&groom]);
+        screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+        assert!(picture.bytes == first.bytes);
+        wanted.push(picture.counters.wanted);
+    }
+    assert!(wanted[0] == first.counters.wanted && wanted[2] < wanted[0] / 2, "{wanted:?}");
+}
