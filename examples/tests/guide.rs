@@ -20,7 +20,7 @@ use tressfx_render::{
     Fill, HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc,
     StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
 };
-use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
 use table::{GUIDE, Row, rows, words};
 
@@ -130,9 +130,12 @@ fn everything() -> PassList {
     let groom = Builtin::parse("curly:8:6").unwrap();
     let strands = Strands::new(&groom.asset(), &StrandOptions { follows: Some(2), ..Default::default() }).unwrap();
     let section = SectionDesc::new(&strands, SimParams::default());
-    let colliders = Collider::all_with_head(&groom.capsules());
+    let mut colliders = Collider::all_with_head(&groom.capsules());
+    // Rods have no contacts.
+    colliders.iter_mut().for_each(|collider| collider.except = &[2]);
     let mut list = PassList::new();
-    let sections = [section.clone(), section.with_own_roots()];
+    let rods = section.clone().with_solver(Solver::Direct);
+    let sections = [section.clone(), section.with_own_roots(), rods];
     let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
     let wind = Wind::new(glam::Vec3::X);
     let turned = Pose { translation: glam::Vec3::X * 0.01, ..Pose::IDENTITY };
@@ -156,7 +159,7 @@ fn everything() -> PassList {
         ShortCutDesc::default().ordered(true).into(),
         ShortCutDesc::default().fill(Fill::Raster).into(),
         ShortCutDesc::default().ordered(true).fill(Fill::Raster).into(),
-        TilesDesc::default().into(),
+        TilesDesc::default().skips_hidden(true).into(),
     ];
     for technique in techniques {
         let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);

@@ -91,6 +91,9 @@ impl Row {
 pub(crate) struct Run {
     pub(crate) setting: Setting,
     pub(crate) rows: Vec<Row>,
+    /// What a reader has to know of rows that are older than others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) note: Option<String>,
 }
 
 impl Run {
@@ -164,7 +167,7 @@ pub(crate) mod tests {
         let mut report = Report::read(&path).unwrap();
         assert_eq!(report, Report::default());
         let rows = vec![Row { psnr_db: None, ..row("tiles", 0.125, 0.5) }, row("ppll", 0.25, 0.75)];
-        *report.run(Extent::Quick) = Some(Run { setting: Extent::Quick.setting(), rows });
+        *report.run(Extent::Quick) = Some(Run { setting: Extent::Quick.setting(), rows, note: None });
         report.write(&path).unwrap();
         assert_eq!(Report::read(&path).unwrap(), report);
         std::fs::remove_file(path).unwrap();

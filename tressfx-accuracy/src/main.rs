@@ -85,7 +85,7 @@ fn main() -> Result<()> {
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent.setting(), args.fresh);
     let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;
-    let run = Run { setting: extent.setting(), rows };
+    let run = Run { setting: extent.setting(), rows, note: None };
     if let Some(stored) = stored.filter(|_| args.check) {
         return check::check(&stored, &run);
     }

@@ -12,7 +12,7 @@ pub(crate) struct Family {
 }
 
 /// All families, in the order of the tables.
-pub(crate) const FAMILIES: [Family; 5] = [
+pub(crate) const FAMILIES: [Family; 6] = [
     Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
     Family {
         name: "ppll-raster",
@@ -28,6 +28,7 @@ pub(crate) const FAMILIES: [Family; 5] = [
         quick_ks: &[3, 8],
     },
     Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
+    Family { name: "tiles-four-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
 ];
 
 /// A family with a setting.
@@ -77,7 +78,7 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 25);
+        assert_eq!(methods(Extent::Full).len(), 26);
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
         assert_eq!(family_of("tiles"), Some((4, "")));
     }

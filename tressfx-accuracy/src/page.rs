@@ -30,6 +30,9 @@ fn page(run: &Run, extent: Extent) -> String {
         run.setting.samples, run.setting.frames
     );
     page.push_str(&devices(run));
+    if let Some(note) = &run.note {
+        let _ = write!(page, "\n{note}\n");
+    }
     for scene in run.scenes() {
         let rows: Vec<&Row> = run.of_scene(scene).collect();
         let _ = write!(page, "\n## {scene}\n\n{}\n{}", picture(scene, &rows), table(&rows));
@@ -91,7 +94,7 @@ mod tests {
     fn times_of_a_cpu_are_called_so_on_the_page_and_in_the_table() {
         let cpu = Row { adapter: "llvmpipe (LLVM)".into(), ..row("tiles", 0.125, 0.5) };
         let untimed = Row { passes: Vec::new(), psnr_db: None, ..row("tiles", 0.125, 0.5) };
-        let of = |row: Row| page(&Run { setting: Extent::Quick.setting(), rows: vec![row] }, Extent::Quick);
+        let of = |row: Row| page(&Run { setting: Extent::Quick.setting(), rows: vec![row], note: None }, Extent::Quick);
         let (software, hardware, untimed) = (of(cpu), of(row("tiles", 0.125, 0.5)), of(untimed));
         assert!(software.contains("a CPU that plays a GPU") && software.contains("| 0.500 (CPU) |"), "{software}");
         assert!(!hardware.contains("CPU") && hardware.contains("| tiles | wgpu | 0.12500 | 40.00 | 30 | 0.500 |"));

@@ -15,8 +15,14 @@ const SIZE: (u32, u32) = (940, 480);
 const LEGEND: i32 = 690;
 
 /// A colour a family; these are told apart by people who see few colours too (Okabe and Ito).
-const COLORS: [RGBColor; FAMILIES.len()] =
-    [RGBColor(0, 114, 178), RGBColor(86, 180, 233), RGBColor(213, 94, 0), RGBColor(230, 159, 0), RGBColor(0, 158, 115)];
+const COLORS: [RGBColor; FAMILIES.len()] = [
+    RGBColor(0, 114, 178),
+    RGBColor(86, 180, 233),
+    RGBColor(213, 94, 0),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+];
 
 /// Of the line along the best ones.
 const FRONT: RGBColor = RGBColor(200, 200, 200);

@@ -50,8 +50,10 @@ pub(crate) struct Stats {
 #[derive(Debug, Deserialize)]
 pub(crate) struct PassStats {
     pub(crate) label: String,
+    /// Of the sums of the frames that have such a pass.
     pub(crate) median_ms: f64,
-    pub(crate) runs: u32,
+    /// How many have.
+    pub(crate) frames: u32,
 }
 
 #[derive(Debug, Deserialize)]

@@ -31,6 +31,7 @@ pub(crate) fn texture_format(format: Format) -> Option<vk::Format> {
         Format::R11G11B10F => vk::Format::B10G11R11_UFLOAT_PACK32,
         Format::R16F => vk::Format::R16_SFLOAT,
         Format::Rg16F => vk::Format::R16G16_SFLOAT,
+        Format::Rg32F => vk::Format::R32G32_SFLOAT,
         Format::R32F => vk::Format::R32_SFLOAT,
         Format::R32Uint => vk::Format::R32_UINT,
         Format::Depth32F => vk::Format::D32_SFLOAT,

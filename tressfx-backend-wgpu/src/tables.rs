@@ -31,7 +31,7 @@ const TEXTURE_USES: [(TextureUses, TextureUsages); 5] = [
     (TextureUses::COPY_DESTINATION, TextureUsages::COPY_DST),
 ];
 
-const FORMATS: [(Format, TextureFormat); 12] = [
+const FORMATS: [(Format, TextureFormat); 13] = [
     (Format::Rgba8, TextureFormat::Rgba8Unorm),
     (Format::Rgba8Srgb, TextureFormat::Rgba8UnormSrgb),
     (Format::Bgra8, TextureFormat::Bgra8Unorm),
@@ -41,6 +41,7 @@ const FORMATS: [(Format, TextureFormat); 12] = [
     (Format::R11G11B10F, TextureFormat::Rg11b10Ufloat),
     (Format::R16F, TextureFormat::R16Float),
     (Format::Rg16F, TextureFormat::Rg16Float),
+    (Format::Rg32F, TextureFormat::Rg32Float),
     (Format::R32F, TextureFormat::R32Float),
     (Format::R32Uint, TextureFormat::R32Uint),
     (Format::Depth32F, TextureFormat::Depth32Float),

@@ -22,6 +22,8 @@ pub enum Format {
     R16F,
     /// Two 16-bit float channels.
     Rg16F,
+    /// Two 32-bit float channels.
+    Rg32F,
     /// One 32-bit float channel.
     R32F,
     /// One 32-bit unsigned integer channel.
@@ -32,7 +34,7 @@ pub enum Format {
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Rgba8,
         Self::Rgba8Srgb,
         Self::Bgra8,
@@ -42,6 +44,7 @@ impl Format {
         Self::R11G11B10F,
         Self::R16F,
         Self::Rg16F,
+        Self::Rg32F,
         Self::R32F,
         Self::R32Uint,
         Self::Depth32F,
@@ -51,7 +54,7 @@ impl Format {
     pub fn bytes(self) -> u32 {
         match self {
             Self::R16F => 2,
-            Self::Rgba16F => 8,
+            Self::Rgba16F | Self::Rg32F => 8,
             _ => 4,
         }
     }
@@ -68,7 +71,7 @@ impl Format {
 
     /// Whether a sampler can read it.
     pub fn is_filterable(self) -> bool {
-        !matches!(self, Self::R32F | Self::R32Uint | Self::Depth32F)
+        !matches!(self, Self::Rg32F | Self::R32F | Self::R32Uint | Self::Depth32F)
     }
 
     /// Whether a colour target of it can blend.

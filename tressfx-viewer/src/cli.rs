@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use tressfx_core::shader::Language;
+use tressfx_sim::Solver;
 
 use crate::camera::Camera;
 use crate::oit::Oit;
@@ -98,6 +99,9 @@ pub(crate) struct Scene {
     /// Follow strands of each guide; without it, what the file says, or more where a file has few strands
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
+    /// What solves the equations of motion
+    #[arg(long, value_enum, default_value_t = SolverName::Tressfx)]
+    pub(crate) solver: SolverName,
     /// The backend that runs the passes
     #[arg(long, value_enum, default_value_t = BackendName::Wgpu)]
     pub(crate) backend: BackendName,
@@ -142,6 +146,12 @@ pub(crate) struct Render {
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
+    /// Write the depth of the hair in the last frame as 16-bit gray, the nearest white; what that stands for is printed
+    #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
+    pub(crate) depth_out: Option<PathBuf>,
+    /// Write how much of each pixel hair covers in the last frame, `1 - transmittance`, as 16-bit gray
+    #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
+    pub(crate) coverage_out: Option<PathBuf>,
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,
@@ -182,11 +192,17 @@ pub(crate) struct Shaders {
     /// Parameters of simulation and look
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
+    /// What solves the equations of motion
+    #[arg(long, value_enum, default_value_t = SolverName::Tressfx)]
+    pub(crate) solver: SolverName,
     /// Follow strands of each guide; without it, as `render` has them
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
     #[command(flatten)]
     pub(crate) oit: Oit,
+    /// Write the kernels of a renderer that writes depth and coverage of the hair too
+    #[arg(long)]
+    pub(crate) hair_output: bool,
 }
 
 impl Shaders {
@@ -245,6 +261,23 @@ pub(crate) enum BackendName {
     Vulkan,
     /// One after the other, with a comparison of their pictures
     Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SolverName {
+    /// That of TressFX: constraints, one after the other
+    Tressfx,
+    /// Rods with bending and twist, all edges of a strand at once; without contacts
+    Direct,
+}
+
+impl SolverName {
+    pub(crate) fn solver(self) -> Solver {
+        match self {
+            Self::Tressfx => Solver::TressFx,
+            Self::Direct => Solver::Direct,
+        }
+    }
 }
 
 /// `N` finite numbers between commas.

@@ -9,6 +9,7 @@ mod cli;
 mod compare;
 mod convert;
 mod groom;
+mod hair_output;
 mod info;
 mod motion;
 mod oit;

@@ -26,6 +26,10 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
+    /// With `--oit tiles`: places in a pixel where light passes hair for itself, 1 or 4. With 4 the picture is nearer to the truth, and
+    /// takes longer; 1 by default
+    #[arg(long, value_name = "N")]
+    places: Option<u32>,
     /// What turns segments of strands into fragments; the picture is the same
     #[arg(long, value_enum, default_value_t = FillName::Compute)]
     fill: FillName,
@@ -86,6 +90,9 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
+        if self.places.is_some() && self.oit != OitName::Tiles {
+            bail!("--places belongs to --oit tiles");
+        }
         let of_lists =
             [("tail", self.oit_tail.is_some()), ("cap", self.oit_cap.is_some()), ("bytes", self.oit_bytes.is_some())];
         for (name, is_given) in of_lists {
@@ -102,7 +109,7 @@ impl Oit {
                 Ok(desc.k(k).ordered(self.oit_ordered).fill(self.fill.fill()).into())
             }
             OitName::Tiles if self.oit_k.is_some() => bail!("--oit-k belongs to --oit ppll and --oit shortcut"),
-            OitName::Tiles => Ok(TilesDesc::default().into()),
+            OitName::Tiles => Ok(self.tiles()?.into()),
         }
     }
 
@@ -115,6 +122,15 @@ impl Oit {
         let desc = PpllDesc::default().tail(tail).cap(self.oit_cap).fill(self.fill.fill());
         let bytes = self.oit_bytes.unwrap_or(desc.max_node_bytes);
         Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?))
+    }
+
+    fn tiles(&self) -> Result<TilesDesc> {
+        let desc = TilesDesc::default();
+        let places = self.places.unwrap_or(desc.places);
+        if !TilesDesc::PLACES.contains(&places) {
+            bail!("--places {places}: it must be 1 or 4");
+        }
+        Ok(desc.places(places))
     }
 
     fn k(&self, default: u32, range: &RangeInclusive<u32>) -> Result<u32> {

@@ -11,7 +11,7 @@ use crate::picture::{Output, developed, texels};
 use crate::run::{Progress, Run};
 use crate::stats::RenderStats;
 use crate::studio::Studio;
-use crate::{passes, reference};
+use crate::{hair_output, passes, reference};
 
 /// Simulates all frames and draws those that are wanted.
 pub(crate) fn run(args: &Render) -> Result<()> {
@@ -33,6 +33,7 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         output.push(frames - 1, reference::picture(&mut run, &mut studio, args)?)?;
     }
     output.finish(args.scene.fps)?;
+    hair_output::write(&mut run, &studio, args)?;
     run.report(&args.scene, studio.drawn)?;
     check_whole(args, &studio.drawn)
 }

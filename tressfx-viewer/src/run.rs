@@ -1,16 +1,17 @@
 //! A simulation that goes on frame by frame: what `render` and `simulate` share.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::metrics::{self, EdgeError};
 use tressfx_sim::{Collider, HairSim, SectionDesc, StepInput, Wind};
 
 use crate::backend;
-use crate::cli::{self, BackendName};
+use crate::cli::{self, BackendName, SolverName};
 use crate::groom::Groom;
 use crate::motion;
 use crate::params::Params;
@@ -36,6 +37,35 @@ pub(crate) struct Run {
     colliders: Vec<Collider<'static>>,
 }
 
+/// What the hair collides with. A solver without contacts leaves out what a built-in groom brings.
+fn colliders(args: &cli::Scene, groom: &Groom, params: &Params) -> Result<Vec<Collider<'static>>> {
+    if args.solver == SolverName::Tressfx {
+        return Ok(Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat()));
+    }
+    if !params.capsule.is_empty() {
+        bail!("the solver `direct` has no contacts, and --params has {} capsules", params.capsule.len());
+    }
+    if !groom.capsules.is_empty() {
+        eprintln!("the solver `direct` has no contacts: the body of the groom is left out");
+    }
+    Ok(Vec::new())
+}
+
+/// Says which strands were made stiffer so that they stand in the pose of their file.
+fn say_standing(sim: &HairSim, section: usize, strands: &Strands) {
+    let Some(standing) = sim.standing(section) else { return };
+    if standing.raised > 0 {
+        let (raised, factor) = (standing.raised, standing.largest_factor);
+        let (name, guides) = (&strands.name, strands.guides);
+        eprintln!(
+            "{name}: the bending length of {raised} of {guides} guides is raised, up to {factor:.1} times: they stand"
+        );
+    }
+    if standing.fallen > 0 {
+        eprintln!("{}: {} of {} guides cannot stand: they sag", strands.name, standing.fallen, strands.guides);
+    }
+}
+
 impl Run {
     pub(crate) fn new(args: &cli::Scene) -> Result<Self> {
         let groom = Groom::load(&args.grooms, args.follow)?;
@@ -45,13 +75,16 @@ impl Run {
             .sections
             .iter()
             .enumerate()
-            .map(|(index, strands)| SectionDesc::new(strands, params.sim(index).clone()))
+            .map(|(index, strands)| {
+                SectionDesc::new(strands, params.sim(index).clone()).with_solver(args.solver.solver())
+            })
             .collect();
-        let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());
+        let colliders = colliders(args, &groom, &params)?;
         let mut uploads = PassList::new();
         let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
         backend.run(&uploads)?;
         sim.set_clock_params(params.clock)?;
+        groom.sections.iter().enumerate().for_each(|(index, strands)| say_standing(&sim, index, strands));
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
             (Some(velocity), None) => Some(Wind::new(velocity)),

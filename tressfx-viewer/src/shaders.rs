@@ -119,11 +119,12 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
-    let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone());
+    let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone()).with_solver(args.solver.solver());
     let sections = [section.clone(), section.with_own_roots()];
     HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
     let technique = args.oit.technique()?;
-    HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F).technique(technique))?;
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
+    HairRenderer::new(&mut backend, &desc)?;
     Ok(backend.shaders)
 }
 

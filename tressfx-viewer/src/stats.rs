@@ -27,12 +27,18 @@ pub(crate) struct GroomStats {
     pub(crate) vertices: u64,
 }
 
-/// GPU time of the passes of one label, over all times that it ran.
+/// GPU time of the passes of one label. A frame may have several, which need not be equal: times are sums within a frame.
 #[derive(Debug, PartialEq, Serialize)]
 pub(crate) struct PassStats {
     pub(crate) label: &'static str,
+    /// Over the frames that have such a pass.
     pub(crate) median_ms: f64,
     pub(crate) min_ms: f64,
+    /// Frames that have such a pass.
+    pub(crate) frames: usize,
+    /// In the mean of those.
+    pub(crate) passes_per_frame: f64,
+    /// Passes of all frames.
     pub(crate) runs: usize,
 }
 
@@ -92,42 +98,64 @@ impl Stats {
 pub(crate) struct PassTimes {
     /// In the order in which the labels first ran.
     passes: Vec<PassCost>,
+    /// Frames so far.
+    frames: usize,
 }
 
 /// The times of one label, and what it cost otherwise when it ran last.
 #[derive(Debug)]
 struct PassCost {
     label: &'static str,
+    /// Of each frame that has such a pass, the sum.
     milliseconds: Vec<f64>,
+    /// The last of those frames.
+    frame: usize,
+    runs: usize,
     bytes: u64,
     invocations: Option<u64>,
 }
 
+impl PassCost {
+    fn new(label: &'static str) -> Self {
+        Self { label, milliseconds: Vec::new(), frame: 0, runs: 0, bytes: 0, invocations: None }
+    }
+
+    fn add(&mut self, frame: usize, timing: &Timing) {
+        if self.frame != frame {
+            self.milliseconds.push(0.0);
+        }
+        if let Some(sum) = self.milliseconds.last_mut() {
+            *sum += timing.nanoseconds * 1e-6;
+        }
+        (self.frame, self.bytes, self.invocations) = (frame, timing.bytes, timing.invocations);
+        self.runs += 1;
+    }
+
+    fn summary(&self) -> PassStats {
+        let mut times = self.milliseconds.clone();
+        times.sort_by(f64::total_cmp);
+        let (frames, runs) = (times.len(), self.runs);
+        let passes_per_frame = runs as f64 / frames as f64;
+        PassStats { label: self.label, median_ms: times[frames / 2], min_ms: times[0], frames, passes_per_frame, runs }
+    }
+}
+
 impl PassTimes {
+    /// Adds the passes of a frame.
     pub(crate) fn add(&mut self, timings: &[Timing]) {
+        self.frames += 1;
         for timing in timings {
-            let milliseconds = timing.nanoseconds * 1e-6;
-            let &Timing { label, bytes, invocations, .. } = timing;
-            match self.passes.iter_mut().find(|pass| pass.label == label) {
-                Some(pass) => {
-                    pass.milliseconds.push(milliseconds);
-                    (pass.bytes, pass.invocations) = (bytes, invocations);
-                }
-                None => {
-                    let milliseconds = vec![milliseconds];
-                    self.passes.push(PassCost { label, milliseconds, bytes, invocations });
-                }
-            }
+            let known = self.passes.iter().position(|pass| pass.label == timing.label);
+            let index = known.unwrap_or_else(|| {
+                self.passes.push(PassCost::new(timing.label));
+                self.passes.len() - 1
+            });
+            self.passes[index].add(self.frames, timing);
         }
     }
 
     pub(crate) fn summary(&self) -> Vec<PassStats> {
-        let summarise = |pass: &PassCost| {
-            let mut times = pass.milliseconds.clone();
-            times.sort_by(f64::total_cmp);
-            PassStats { label: pass.label, median_ms: times[times.len() / 2], min_ms: times[0], runs: times.len() }
-        };
-        self.passes.iter().map(summarise).collect()
+        self.passes.iter().map(PassCost::summary).collect()
     }
 }
 
@@ -136,11 +164,12 @@ impl PassTimes {
     pub(crate) fn table(&self) -> String {
         let mut table = Table::new();
         table.load_style(presets::ASCII_MARKDOWN);
-        table.set_header(["pass", "runs", "median ms", "least ms", "invocations", "MB bound"]);
+        table.set_header(["pass", "frames", "passes a frame", "median ms", "least ms", "invocations", "MB bound"]);
         for (pass, times) in self.passes.iter().zip(self.summary()) {
             table.add_row([
                 pass.label.to_owned(),
-                times.runs.to_string(),
+                times.frames.to_string(),
+                format!("{:.1}", times.passes_per_frame),
                 format!("{:.4}", times.median_ms),
                 format!("{:.4}", times.min_ms),
                 pass.invocations.map_or_else(|| String::from("-"), |count| count.to_string()),
@@ -156,16 +185,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_summed_up_by_label_in_the_order_of_the_frame() {
+    fn times_are_those_of_frames_by_label_in_the_order_of_the_first() {
         let mut times = PassTimes::default();
         let timing =
             |label, milliseconds: f64| Timing { nanoseconds: milliseconds * 1e6, ..Timing::new(label, None, 0) };
         times.add(&[timing("b", 3.0), timing("a", 1.0)]);
-        times.add(&[timing("b", 1.0), timing("b", 2.0)]);
-        let expected = [
-            PassStats { label: "b", median_ms: 2.0, min_ms: 1.0, runs: 3 },
-            PassStats { label: "a", median_ms: 1.0, min_ms: 1.0, runs: 1 },
-        ];
-        assert_eq!(times.summary(), expected);
+        // A short round and a long one: neither of them is the frame.
+        times.add(&[timing("b", 0.5), timing("b", 8.0)]);
+        times.add(&[]);
+        times.add(&[timing("b", 0.25), timing("a", 2.0), timing("b", 4.0)]);
+        let of = |label, [median_ms, min_ms]: [f64; 2], frames, runs| {
+            let passes_per_frame = runs as f64 / frames as f64;
+            PassStats { label, median_ms, min_ms, frames, passes_per_frame, runs }
+        };
+        assert_eq!(times.summary(), [of("b", [4.25, 3.0], 3, 5), of("a", [2.0, 1.0], 2, 2)]);
+        let table = times.table();
+        assert!(table.contains("passes a frame") && table.contains("| 1.7 "), "{table}");
     }
 }

@@ -3,11 +3,11 @@
 use anyhow::Result;
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Format, TextureDesc};
-use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, Technique,
-    ViewDraw,
+    Counters, HAIR_FORMAT, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
+    Technique, ViewDraw,
 };
 use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
@@ -36,7 +36,11 @@ impl Studio {
         let view = args.camera.view(&run.groom.rest(), args.size)?;
         let backend = &mut *run.backend;
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
-        let targets = Targets::new(texture("picture", TARGET)?, texture("depth", Format::Depth32F)?);
+        let mut targets = Targets::new(texture("picture", TARGET)?, texture("depth", Format::Depth32F)?);
+        let hair_output = args.depth_out.is_some() || args.coverage_out.is_some();
+        if hair_output {
+            targets = targets.hair(texture("hair", HAIR_FORMAT)?);
+        }
         let mut uploads = PassList::new();
         let meshes = mesh
             .iter()
@@ -48,7 +52,7 @@ impl Studio {
             let section = ShadedStrands::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
             sections.push((section, *run.params.material(index)));
         }
-        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?);
+        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth())?;
@@ -74,6 +78,10 @@ impl Studio {
     /// Records the hair over it.
     pub(crate) fn draw_hair(&mut self, list: &mut PassList, pose: Pose) -> Result<Ticket> {
         let Self { view, lights, targets, renderer, .. } = self;
+        if let Some(hair) = targets.hair {
+            // Pixels without hair keep what they have: no coverage.
+            list.raster(RasterPass::new("studio.clear_hair").color(hair, Load::Clear([0.0; 4])));
+        }
         let view = ViewDraw::new(view, lights, *targets);
         renderer.draw(list, &[view], &draws(&self.sections, pose))?;
         Ok(self.renderer.request_counters(list, 0))

@@ -99,8 +99,32 @@ fn bad_words_are_refused_by_name() {
     assert!(words(&["--oit", "tiles", "--oit-tail", "none"]).0.contains("--oit-tail belongs to --oit ppll"));
     assert!(words(&["--oit", "auto", "--oit-k", "33"]).0.contains("--oit-k 33: it must be from 0 to 32"));
     assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
+    assert!(words(&["--places", "4"]).0.contains("--places belongs to --oit tiles"));
+    assert!(words(&["--oit", "tiles", "--places", "2"]).0.contains("--places 2: it must be 1 or 4"));
     assert!(fails(&folder, &["render", "builtin:beard", "--out", "x.png"]).0.contains("beard"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
+}
+
+#[test]
+fn depth_and_coverage_are_pictures_of_their_own() {
+    let folder = folder("outputs");
+    let outputs = ["--depth-out", "depth.png", "--coverage-out", "coverage.png"];
+    render(&folder, &["--out", "plain.png"]);
+    for (technique, also) in [("ppll", "--out=a.png"), ("shortcut", "--out=b.png"), ("tiles", "--out=c.png")] {
+        let text = render(&folder, &[&outputs[..], &["--oit", technique, also]].concat());
+        assert!(text.contains("depth.png: distance from the eye") && text.contains("is 65535"), "{text}");
+        let open = |name: &str| image::open(folder.join(name)).unwrap().into_luma16();
+        let (depth, coverage) = (open("depth.png"), open("coverage.png"));
+        assert_eq!((depth.dimensions(), coverage.dimensions()), ((160, 90), (160, 90)));
+        let hair = depth.pixels().filter(|pixel| pixel[0] >= 4096).count();
+        assert_eq!(hair, coverage.pixels().filter(|pixel| pixel[0] > 0).count(), "{technique}");
+        assert!(hair > 300 && depth.pixels().filter(|pixel| pixel[0] == 65_535).count() >= 1, "{technique}: {hair}");
+    }
+    let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert!(read("a.png") == read("plain.png"), "the picture is the same");
+    let both = [&["render", "builtin:fur:10:4", "--out", "x.png", "--reference"], &outputs[..2]].concat();
+    let (message, code) = fails(&folder, &both);
+    assert!(code == 2 && message.contains("--depth-out"), "{message}");
 }
 
 #[test]
@@ -161,7 +185,9 @@ fn figures_have_their_keys_and_sensible_values() {
     }
     for pass in stats["passes"].as_array().unwrap() {
         let figure = |key: &str| pass[key].as_f64().unwrap();
-        assert!(figure("min_ms") <= figure("median_ms") && figure("runs") >= 1.0, "{pass}");
+        assert!(figure("min_ms") <= figure("median_ms"), "{pass}");
+        assert!(figure("frames") >= 1.0 && figure("frames") <= figure("runs"), "{pass}");
+        assert!((figure("passes_per_frame") * figure("frames") / figure("runs") - 1.0).abs() < 1e-9, "{pass}");
     }
 }
 
@@ -191,10 +217,11 @@ fn each_technique_draws_the_hair_and_says_what_it_takes() {
             assert_eq!(render[key], lists[key], "{key}");
         }
         let [width, height] = [160, 90u64];
-        let tiles = 4 * width.div_ceil(8) * height.div_ceil(8);
+        // Eight bytes a pixel are those of whole tiles.
+        let tiles = (8 * 64 + 8) * width.div_ceil(8) * height.div_ceil(8);
         // Of eight views; and the arguments of the draw over the tiles.
-        let counters = 8 * 24 + 16;
-        assert_eq!(render["oit_bytes"].as_u64(), Some(bytes * width * height + tiles + counters), "{words:?}");
+        let counters = 8 * 28 + 16;
+        assert_eq!(render["oit_bytes"].as_u64(), Some((bytes - 8) * width * height + tiles + counters), "{words:?}");
         let flip = flip_to_lists(&folder, "shortcut.png");
         assert!(flip < 0.03, "{words:?}: FLIP {flip} to the lists");
     }
@@ -259,4 +286,22 @@ fn the_reference_draws_the_same_frame() {
 #[test]
 fn adapters_are_listed() {
     assert!(!passes(&folder("adapters"), &["adapters"]).trim().is_empty());
+}
+
+#[test]
+fn rods_say_that_they_have_no_contacts_and_which_stand() {
+    let folder = folder("rods");
+    let simulate = ["simulate", "builtin:wavy:20:12", "--frames", "8", "--solver", "direct", "--out", "pose.tfx"];
+    let output = tressfx(&folder, &simulate);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("has no contacts: the body of the groom is left out"), "{said}");
+    assert!(said.contains("of 20 guides is raised"), "{said}");
+    let capsule = "[[capsule]]\na = [0.0, 0.0, 0.0]\nb = [0.0, 1.0, 0.0]\nradius_a = 0.1\nradius_b = 0.1\n";
+    std::fs::write(folder.join("capsule.toml"), capsule).unwrap();
+    let (message, code) = fails(&folder, &[&simulate[..], &["--params", "capsule.toml"]].concat());
+    assert!(message.contains("`direct` has no contacts, and --params has 1 capsules") && code == 1, "{message}");
+    std::fs::write(folder.join("soft.toml"), "[sim]\nbending_length = 0.0\n").unwrap();
+    let (message, _) = fails(&folder, &[&simulate[..], &["--params", "soft.toml"]].concat());
+    assert!(message.contains("parameter bending_length = 0 must be from 0.002 to 10"), "{message}");
 }

@@ -131,7 +131,7 @@ fn target(format: Format, blend: Blend, color: Option<&str>) -> Result<(), Strin
 fn channels(format: Format) -> u32 {
     match format {
         Format::R16F | Format::R32F | Format::R32Uint => 1,
-        Format::Rg16F => 2,
+        Format::Rg16F | Format::Rg32F => 2,
         Format::R11G11B10F => 3,
         _ => 4,
     }
