@@ -56,11 +56,26 @@ impl Rig {
     ///
     /// # Panics
     /// If the simulation cannot be made.
-    pub fn with_solver(mut backend: Box<dyn Run>, strands: Strands, params: SimParams, solver: Solver) -> Self {
+    pub fn with_solver(backend: Box<dyn Run>, strands: Strands, params: SimParams, solver: Solver) -> Self {
+        Self::with_colliders(backend, strands, params, solver, &[], 0)
+    }
+
+    /// The same with these capsules on the head, and room for `most` colliders in a frame.
+    ///
+    /// # Panics
+    /// If the simulation cannot be made.
+    pub fn with_colliders(
+        mut backend: Box<dyn Run>,
+        strands: Strands,
+        params: SimParams,
+        solver: Solver,
+        capsules: &[Capsule],
+        most: usize,
+    ) -> Self {
         let desc = SectionDesc::new(&strands, params).with_solver(solver);
-        let (sim, list) = Self::simulation(&mut *backend, &[desc], 0);
+        let (sim, list) = Self::simulation(&mut *backend, &[desc], most);
         backend.run(&list).expect("the uploads run");
-        Self { backend, sim, strands: vec![strands], capsules: Vec::new() }
+        Self { backend, sim, strands: vec![strands], capsules: capsules.to_vec() }
     }
 
     fn simulation(backend: &mut dyn Run, descs: &[SectionDesc], most: usize) -> (HairSim, PassList) {

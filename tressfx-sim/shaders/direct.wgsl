@@ -4,44 +4,20 @@
 
 import package::grid::{GROUP, thread_index};
 import package::joint::{Stiffness, joint_between, outer, scaled_identity, stiffness_of, torque_of};
-import package::root::{Root, root_of, shape_of};
+import package::rod::{
+    BY_PARENT, BY_PLACE, FRAME, LAST_STRAIN, LAST_VELOCITY, MOVED, MOVING, NOW, STRAIN, Strand, VELOCITY, along, frame_at_rest,
+    half_turn, length_of, positions, rest, rods, slot, strand_of,
+};
+import package::root::shape_of;
 import package::step::step;
-import package::vector::{after, direction_or, is_finite, rotate, turned};
-import package::wind::wind_of;
+import package::vector::{after, direction_or, is_finite, turned};
+@if(contacts)
+import package::rod::{edge_of, last_touch};
+@if(contacts)
+import package::rod_contact::{Contacts, FAR, contacts_of, packed_direction, surface_bound};
 
-@group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read> rest_lengths: array<f32>;
-/// Two for each vertex: half of the rotation that the joint before its edge wants, and the frame of the edge at rest. The tip has no edge;
-/// its first has what the strand's bending is multiplied by, how many edges the root holds, the shortest length that bends, and 1 if the
-/// tip is pinned.
-@group(0) @binding(3) var<storage, read> rod_rest: array<vec4<f32>>;
-/// The state, `STATE` for each vertex.
-@group(0) @binding(4) var<storage, read_write> rods: array<vec4<f32>>;
-/// What the sweeps leave for each other, `SCRATCH` for each vertex.
-@group(0) @binding(5) var<storage, read_write> rod_scratch: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read_write> positions: array<vec4<f32>>;
 /// Strands that were reset because they had become non-finite.
-@group(0) @binding(7) var<storage, read_write> non_finite: atomic<u32>;
-
-/// Frame of the edge, at the tip the force that holds it; what the vertex moved by in the last sub-step; its velocity, and at the root whether the past counts; its
-/// velocity before; the strain of the joint, and before.
-const STATE: u32 = 6u;
-const FRAME: u32 = 0u;
-const MOVED: u32 = 1u;
-const VELOCITY: u32 = 2u;
-const LAST_VELOCITY: u32 = 3u;
-const STRAIN: u32 = 4u;
-const LAST_STRAIN: u32 = 5u;
-
-/// The frame of the edge and what the vertex has moved by in this sub-step, as far as they are known; what is left of the edge
-/// after the elimination: its rotation, and by the columns of two matrices what of it its parent's rotation and the
-/// displacement of the vertex before it make.
-const SCRATCH: u32 = 9u;
-const NOW: u32 = 0u;
-const MOVING: u32 = 1u;
-const FREE: u32 = 2u;
-const BY_PARENT: u32 = 3u;
-const BY_PLACE: u32 = 6u;
+@group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
 /// How stiff the spring is that holds a pinned tip, over the mass of the tip.
 const HOLD: f32 = 1e4;
@@ -54,25 +30,14 @@ const ANOTHER_ROUND: f32 = 2.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
 const SHORT: f32 = 1.0 / 120.0;
 
-/// What is the same for a whole strand.
-struct Strand {
-    guide: u32,
-    root: Root,
-    /// Edges that the root holds.
-    held: u32,
-    edges: u32,
-    bending: f32,
-    shortest_span: f32,
-    mass_correction: f32,
-    wind: vec3<f32>,
-    /// 1 where the tip is pinned.
-    tip_pinned: f32,
-    has_past: bool,
-    /// The length that the formula in time divides by.
-    length: f32,
-    /// What gravity makes of the sub-step.
-    fall: vec3<f32>,
-}
+/// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
+const TOUCHING_ROUNDS: u32 = 4u;
+/// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
+const MOST_ROUNDS: u32 = 8u;
+const SETTLED: f32 = 1e-5;
+
+/// Whether any edge of a strand touches a capsule, and whether one is deep inside.
+struct Touched { any: bool, deep: bool }
 
 @compute @workgroup_size(GROUP)
 fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -85,59 +50,21 @@ fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
         return;
     }
     aim(strand);
+    var touched = touched_of(strand);
     var turn = 0.0;
-    for (var round = 0u; round < step.rounds; round++) {
-        eliminate(strand);
+    for (var round = 1u; round <= MOST_ROUNDS; round++) {
+        eliminate(strand, touched.any);
         turn = substitute(strand);
-        if (turn < ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0)) { break; }
+        touched = touched_of(strand);
+        let calm = turn < ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0);
+        let least = select(1u, TOUCHING_ROUNDS, touched.any && turn >= SETTLED);
+        if (round >= least && (calm || round >= step.rounds) && !(touched.deep && turn >= SETTLED)) { break; }
     }
-    if (!finish(strand, turn < TOO_FAST)) {
+    let is_new = note_touches(strand, touched.any);
+    if (!finish(strand, turn < TOO_FAST && !is_new)) {
         rest_again(strand);
         atomicAdd(&non_finite, 1u);
     }
-}
-
-fn strand_of(guide: u32) -> Strand {
-    let tip = rod_rest[2u * (step.vertices - 1u) * step.guides + guide];
-    let has_past = step.first_order == 0u && rods[VELOCITY * step.guides + guide].w > 0.5;
-    var strand: Strand;
-    strand.guide = guide;
-    strand.root = root_of(guide);
-    strand.held = u32(tip.y);
-    strand.edges = step.vertices - 1u;
-    strand.bending = step.bending * tip.x;
-    strand.shortest_span = tip.z;
-    strand.mass_correction = select(5.0 / 6.0, 1.0, step.vertices == 2u) / 6.0;
-    strand.wind = wind_of(guide);
-    strand.has_past = has_past;
-    strand.tip_pinned = tip.w;
-    strand.length = select(step.length, step.length * (2.0 / 3.0), has_past);
-    strand.fall = step.gravity * select(1.0, 4.0 / 9.0, has_past);
-    return strand;
-}
-
-fn state(strand: Strand, vertex: u32, slot: u32) -> u32 {
-    return (vertex * STATE + slot) * step.guides + strand.guide;
-}
-
-fn scratch(strand: Strand, vertex: u32, slot: u32) -> u32 {
-    return (vertex * SCRATCH + slot) * step.guides + strand.guide;
-}
-
-fn length_of(strand: Strand, edge: u32) -> f32 {
-    return rest_lengths[edge * step.guides + strand.guide];
-}
-
-fn half_turn(strand: Strand, edge: u32) -> vec4<f32> {
-    return rod_rest[2u * edge * step.guides + strand.guide];
-}
-
-fn frame_at_rest(strand: Strand, edge: u32) -> vec4<f32> {
-    return after(strand.root.rotation, rod_rest[(2u * edge + 1u) * step.guides + strand.guide]);
-}
-
-fn along(frame: vec4<f32>) -> vec3<f32> {
-    return rotate(frame, vec3(0.0, 0.0, 1.0));
 }
 
 /// The strand goes to its rest pose, at rest.
@@ -145,21 +72,21 @@ fn rest_again(strand: Strand) {
     for (var i = 0u; i < step.vertices; i++) {
         let vertex = rest[i * step.guides + strand.guide];
         positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
-        for (var slot = FRAME; slot < STATE; slot++) { rods[state(strand, i, slot)] = vec4(0.0); }
-        if (i < strand.edges) { rods[state(strand, i, FRAME)] = frame_at_rest(strand, i); }
+        for (var j = FRAME; j < NOW; j++) { rods[slot(strand, i, j)] = vec4(0.0); }
+        if (i < strand.edges) { rods[slot(strand, i, FRAME)] = frame_at_rest(strand, i); }
     }
-    store_strains(strand, FRAME, false);
+    store_strains(strand, false);
 }
 
 /// Stores the strains of all joints; the ones before them are kept, or are the same.
-fn store_strains(strand: Strand, slot: u32, keep: bool) {
+fn store_strains(strand: Strand, keep: bool) {
     @if(internal_damping) {
         var parent = strand.root.rotation;
         for (var edge = 0u; edge < strand.edges; edge++) {
-            let frame = rods[state(strand, edge, slot)];
+            let frame = rods[slot(strand, edge, FRAME)];
             let strain = vec4(joint_between(parent, half_turn(strand, edge), frame).strain, 0.0);
-            rods[state(strand, edge, LAST_STRAIN)] = select(strain, rods[state(strand, edge, STRAIN)], keep);
-            rods[state(strand, edge, STRAIN)] = strain;
+            rods[slot(strand, edge, LAST_STRAIN)] = select(strain, rods[slot(strand, edge, STRAIN)], keep);
+            rods[slot(strand, edge, STRAIN)] = strain;
             parent = frame;
         }
     }
@@ -168,15 +95,14 @@ fn store_strains(strand: Strand, slot: u32, keep: bool) {
 /// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
 /// velocities.
 fn aim(strand: Strand) {
-    let root_now = shape_of(strand.root, rest[strand.guide].xyz);
-    var moving = root_now - positions[strand.guide].xyz + step.center_displacement;
-    var begin = step.length * rods[state(strand, 0u, VELOCITY)].xyz;
-    rod_scratch[scratch(strand, 0u, MOVING)] = vec4(moving, 0.0);
+    var moving = strand.root_moved;
+    var begin = step.length * rods[slot(strand, 0u, VELOCITY)].xyz;
+    rods[slot(strand, 0u, MOVING)] = vec4(moving, 0.0);
     for (var edge = 0u; edge < strand.edges; edge++) {
         let length = length_of(strand, edge);
-        let frame = rods[state(strand, edge, FRAME)];
+        let frame = rods[slot(strand, edge, FRAME)];
         let here = along(frame);
-        let to = step.length * rods[state(strand, edge + 1u, VELOCITY)].xyz;
+        let to = step.length * rods[slot(strand, edge + 1u, VELOCITY)].xyz;
         var now = frame_at_rest(strand, edge);
         if (edge >= strand.held) {
             let start = select(begin, moving, edge == strand.held);
@@ -185,8 +111,8 @@ fn aim(strand: Strand) {
         // From two directions, not from two places, which would lose more.
         moving += length * (along(now) - here);
         begin = to;
-        rod_scratch[scratch(strand, edge, NOW)] = now;
-        rod_scratch[scratch(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
+        rods[slot(strand, edge, NOW)] = now;
+        rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
     }
 }
 
@@ -194,12 +120,12 @@ fn aim(strand: Strand) {
 struct Pulled { place: vec3<f32>, free: vec3<f32> }
 
 fn pulled(strand: Strand, vertex: u32, moving: vec3<f32>) -> Pulled {
-    let velocity = rods[state(strand, vertex, VELOCITY)].xyz;
+    let velocity = rods[slot(strand, vertex, VELOCITY)].xyz;
     var place = -moving;
     var kept = velocity;
     if (strand.has_past) {
-        place += rods[state(strand, vertex, MOVED)].xyz / 3.0;
-        kept = (4.0 * velocity - rods[state(strand, vertex, LAST_VELOCITY)].xyz) / 3.0;
+        place += rods[slot(strand, vertex, MOVED)].xyz / 3.0;
+        kept = (4.0 * velocity - rods[slot(strand, vertex, LAST_VELOCITY)].xyz) / 3.0;
     }
     return Pulled(place, place + strand.length * kept + strand.fall);
 }
@@ -224,16 +150,16 @@ fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, moving: vec3<
 
 /// From the tip to the root: takes each edge out of the system, and gives the vertex before it and its parent what the edge and all
 /// beyond want of them. That is half of a quadratic function of the displacement of a vertex and of the rotation of the edge before it.
-fn eliminate(strand: Strand) {
+fn eliminate(strand: Strand, touches: bool) {
     let tip = strand.edges;
     var length = length_of(strand, tip - 1u);
-    var frame = rod_scratch[scratch(strand, tip - 1u, NOW)];
+    var frame = rods[slot(strand, tip - 1u, NOW)];
     var axis = along(frame);
-    var moving = rod_scratch[scratch(strand, tip, MOVING)].xyz;
+    var moving = rods[slot(strand, tip, MOVING)].xyz;
     var after_edge = pulled(strand, tip, moving);
     let last = inertia(strand, tip, 0.5 * length, after_edge, moving, axis);
     let spring = hold_stiffness(strand);
-    let hold = rods[state(strand, tip, FRAME)].xyz;
+    let hold = rods[slot(strand, tip, FRAME)].xyz;
     let gap = hold_place(strand) - positions[tip * step.strands + strand.guide].xyz + step.center_displacement - moving;
     var place = last.mass + scaled_identity(spring);
     var mixed = scaled_identity(0.0);
@@ -242,6 +168,8 @@ fn eliminate(strand: Strand) {
     var torque = vec3(0.0);
     // The force that the tip has come to is held with, not that of the spring, which changes its sign from round to round.
     var pull = last.force + hold;
+    // Of the edge after the one at hand, which has half of the mass between them.
+    var length_after = 0.0;
     for (var edge = tip; edge > strand.held; ) {
         edge--;
         var length_before = 0.0;
@@ -249,10 +177,11 @@ fn eliminate(strand: Strand) {
         var direction = axis;
         if (edge > 0u) {
             length_before = length_of(strand, edge - 1u);
-            parent = rod_scratch[scratch(strand, edge - 1u, NOW)];
+            parent = rods[slot(strand, edge - 1u, NOW)];
             direction = along(parent);
         }
-        moving = rod_scratch[scratch(strand, edge, MOVING)].xyz;
+        let end_moving = moving;
+        moving = rods[slot(strand, edge, MOVING)].xyz;
         let before_edge = pulled(strand, edge, moving);
 
         // The vertex after the edge moves by the one before it and `arm * rotation`.
@@ -263,6 +192,19 @@ fn eliminate(strand: Strand) {
         turn += half + transpose(half) + back * place * arm;
         torque += back * force;
         mixed += place * arm;
+        @if(contacts) {
+            if (touches) {
+                let mass = 0.5 * (length + length_after);
+                let contacts = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last_touch(strand, edge), mass);
+                turn += back * contacts.turn * arm;
+                torque += back * contacts.torque;
+                mixed += contacts.mixed * arm;
+                place += contacts.place;
+                force += contacts.force;
+                pull += contacts.pull;
+            }
+            length_after = length;
+        }
         // Tension pulls an edge straight; pressure would let it fall, and is left out.
         let correction = strand.mass_correction * length;
         turn += (length * max(dot(axis, pull), 0.0) - correction * length * length) * across;
@@ -304,81 +246,146 @@ fn eliminate(strand: Strand) {
 fn past_strain(strand: Strand, edge: u32, strain: vec3<f32>) -> vec3<f32> {
     @if(!internal_damping) { return strain; }
     @if(internal_damping) {
-        let last = rods[state(strand, edge, STRAIN)].xyz;
-        let before = rods[state(strand, edge, LAST_STRAIN)].xyz;
+        let last = rods[slot(strand, edge, STRAIN)].xyz;
+        let before = rods[slot(strand, edge, LAST_STRAIN)].xyz;
         return select(last, (4.0 * last - before) / 3.0, strand.has_past);
     }
 }
 
 fn store(strand: Strand, edge: u32, free: vec3<f32>, by_parent: mat3x3<f32>, by_place: mat3x3<f32>) {
-    rod_scratch[scratch(strand, edge, FREE)] = vec4(free, 0.0);
-    rod_scratch[scratch(strand, edge, BY_PARENT)] = vec4(by_parent[0], 0.0);
-    rod_scratch[scratch(strand, edge, BY_PARENT + 1u)] = vec4(by_parent[1], 0.0);
-    rod_scratch[scratch(strand, edge, BY_PARENT + 2u)] = vec4(by_parent[2], 0.0);
-    rod_scratch[scratch(strand, edge, BY_PLACE)] = vec4(by_place[0], 0.0);
-    rod_scratch[scratch(strand, edge, BY_PLACE + 1u)] = vec4(by_place[1], 0.0);
-    rod_scratch[scratch(strand, edge, BY_PLACE + 2u)] = vec4(by_place[2], 0.0);
+    rods[slot(strand, edge, BY_PARENT)] = vec4(by_parent[0], free.x);
+    rods[slot(strand, edge, BY_PARENT + 1u)] = vec4(by_parent[1], free.y);
+    rods[slot(strand, edge, BY_PARENT + 2u)] = vec4(by_parent[2], free.z);
+    rods[slot(strand, edge, BY_PLACE)] = vec4(by_place[0], 0.0);
+    rods[slot(strand, edge, BY_PLACE + 1u)] = vec4(by_place[1], 0.0);
+    rods[slot(strand, edge, BY_PLACE + 2u)] = vec4(by_place[2], 0.0);
 }
 
 /// From the root to the tip: turns each edge. Gives the longest rotation, rad.
 fn substitute(strand: Strand) -> f32 {
     var shift = vec3(0.0);
     var parent = vec3(0.0);
-    var moving = rod_scratch[scratch(strand, strand.held, MOVING)].xyz;
+    var moving = rods[slot(strand, strand.held, MOVING)].xyz;
     var longest = 0.0;
     for (var edge = strand.held; edge < strand.edges; edge++) {
         let length = length_of(strand, edge);
-        var rotation = rod_scratch[scratch(strand, edge, FREE)].xyz
-            + columns(strand, edge, BY_PARENT) * parent
-            - columns(strand, edge, BY_PLACE) * shift;
+        let first = rods[slot(strand, edge, BY_PARENT)];
+        let second = rods[slot(strand, edge, BY_PARENT + 1u)];
+        let third = rods[slot(strand, edge, BY_PARENT + 2u)];
+        let by_place = mat3x3(
+            rods[slot(strand, edge, BY_PLACE)].xyz,
+            rods[slot(strand, edge, BY_PLACE + 1u)].xyz,
+            rods[slot(strand, edge, BY_PLACE + 2u)].xyz,
+        );
+        let free = vec3(first.w, second.w, third.w);
+        var rotation = free + mat3x3(first.xyz, second.xyz, third.xyz) * parent - by_place * shift;
         let size = sqrt(dot(rotation, rotation));
         rotation *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
         longest = max(longest, min(size, LONGEST_TURN));
-        let frame = rod_scratch[scratch(strand, edge, NOW)];
+        let frame = rods[slot(strand, edge, NOW)];
         let now = normalize(after(rotation_by(rotation), frame));
         shift += length * cross(rotation, along(frame));
-        moving += length * (along(now) - along(rods[state(strand, edge, FRAME)]));
-        rod_scratch[scratch(strand, edge, NOW)] = now;
-        rod_scratch[scratch(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
+        moving += length * (along(now) - along(rods[slot(strand, edge, FRAME)]));
+        rods[slot(strand, edge, NOW)] = now;
+        rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
         parent = rotation;
     }
     return longest;
 }
 
-fn columns(strand: Strand, edge: u32, first: u32) -> mat3x3<f32> {
-    return mat3x3(
-        rod_scratch[scratch(strand, edge, first)].xyz,
-        rod_scratch[scratch(strand, edge, first + 1u)].xyz,
-        rod_scratch[scratch(strand, edge, first + 2u)].xyz,
-    );
+/// Whether a strand touches anything, as far as it has got. Where the nearest capsule is some way off, the edges from there on need no
+/// test for as long.
+fn touched_of(strand: Strand) -> Touched {
+    var touched = Touched(false, false);
+    @if(contacts) {
+        if (step.first_capsule == step.end_capsule) { return touched; }
+        var furthest = 0.0;
+        var reach = 0.0;
+        for (var i = strand.held; i <= strand.edges; i++) {
+            let moving = rods[slot(strand, i, MOVING)].xyz;
+            furthest = max(furthest, dot(moving, moving));
+            if (i < strand.edges) { reach += length_of(strand, i); }
+        }
+        furthest = sqrt(furthest) + surface_bound(positions[strand.guide].xyz, reach);
+        var free = 0.0;
+        var moving = rods[slot(strand, strand.held, MOVING)].xyz;
+        for (var edge = strand.held; edge < strand.edges; edge++) {
+            let end_moving = rods[slot(strand, edge + 1u, MOVING)].xyz;
+            free -= length_of(strand, edge);
+            if (free <= 0.0) {
+                let contacts = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last_touch(strand, edge), 1.0);
+                touched.any = touched.any || contacts.touch.obstacle > 0u;
+                touched.deep = touched.deep || contacts.touch.is_deep;
+                free = contacts.clearance - furthest;
+            }
+            moving = end_moving;
+        }
+    }
+    return touched;
+}
+
+/// Notes what each edge touches, in place of what the elimination has left, and says whether any of it is new.
+fn note_touches(strand: Strand, touches: bool) -> bool {
+    var is_new = false;
+    @if(contacts) {
+        for (var edge = 0u; edge < strand.edges; edge++) {
+            var stretch = vec4(0.0);
+            var obstacle = 0u;
+            if (touches && edge >= strand.held) {
+                let moving = rods[slot(strand, edge, MOVING)].xyz;
+                let end_moving = rods[slot(strand, edge + 1u, MOVING)].xyz;
+                let last = last_touch(strand, edge);
+                let touch = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last, 1.0).touch;
+                obstacle = touch.obstacle;
+                if (obstacle > 0u) { stretch = vec4(touch.stretch, packed_direction(touch.normal)); }
+                is_new = is_new || (obstacle > 0u && obstacle != last.obstacle);
+            }
+            rods[slot(strand, edge, BY_PLACE)] = stretch;
+            rods[slot(strand, edge, BY_PLACE + 1u)] = vec4(f32(obstacle), 0.0, 0.0, 0.0);
+        }
+    }
+    return is_new;
+}
+
+/// Keeps what the edge before a vertex touches; zeros of a strand that touches nothing.
+fn keep_touch(strand: Strand, vertex: u32) {
+    @if(contacts) {
+        let stretch = rods[slot(strand, vertex - 1u, BY_PLACE)];
+        rods[slot(strand, vertex, MOVED)].w = stretch.x;
+        rods[slot(strand, vertex, VELOCITY)].w = stretch.y;
+        rods[slot(strand, vertex, LAST_VELOCITY)].w = stretch.z;
+        rods[slot(strand, vertex, STRAIN)].w = stretch.w;
+        rods[slot(strand, vertex, LAST_STRAIN)].w = rods[slot(strand, vertex - 1u, BY_PLACE + 1u)].x;
+    }
 }
 
 /// Stores the state that the next sub-step begins with, and the positions. Says whether they are finite.
 fn finish(strand: Strand, calm: bool) -> bool {
-    var place = shape_of(strand.root, rest[strand.guide].xyz);
+    var place = strand.root_now;
     var finite = true;
     for (var i = 0u; i < step.vertices; i++) {
-        let moving = rod_scratch[scratch(strand, i, MOVING)].xyz;
+        let moving = rods[slot(strand, i, MOVING)].xyz;
         var velocity = moving / step.length;
         if (calm) {
             var past = vec3(0.0);
-            if (strand.has_past) { past = rods[state(strand, i, MOVED)].xyz / 3.0; }
+            if (strand.has_past) { past = rods[slot(strand, i, MOVED)].xyz / 3.0; }
             velocity = (moving - past) / strand.length;
         }
-        rods[state(strand, i, LAST_VELOCITY)] = vec4(rods[state(strand, i, VELOCITY)].xyz, 0.0);
-        rods[state(strand, i, VELOCITY)] = vec4(velocity, select(0.0, 1.0, calm));
-        rods[state(strand, i, MOVED)] = vec4(moving, 0.0);
+        rods[slot(strand, i, LAST_VELOCITY)] = vec4(rods[slot(strand, i, VELOCITY)].xyz, 0.0);
+        rods[slot(strand, i, VELOCITY)] = vec4(velocity, select(0.0, 1.0, calm));
+        rods[slot(strand, i, MOVED)] = vec4(moving, 0.0);
         let then = positions[i * step.strands + strand.guide];
         if (i == strand.edges) { keep_hold(strand, then.xyz - step.center_displacement + moving); }
         positions[i * step.strands + strand.guide] = vec4(place, then.w);
         finite = finite && is_finite(place) && is_finite(velocity);
         if (i < strand.edges) {
-            let now = rod_scratch[scratch(strand, i, NOW)];
-            rods[state(strand, i, FRAME)] = now;
+            let now = rods[slot(strand, i, NOW)];
+            rods[slot(strand, i, FRAME)] = now;
             place += length_of(strand, i) * along(now);
         }
     }
-    store_strains(strand, FRAME, true);
+    store_strains(strand, true);
+    for (var i = 1u; i < step.vertices; i++) { keep_touch(strand, i); }
     return finite;
 }
 
@@ -397,7 +404,7 @@ fn hold_place(strand: Strand) -> vec3<f32> {
 fn keep_hold(strand: Strand, place: vec3<f32>) {
     @if(pinned_tips) {
         let more = hold_stiffness(strand) * (hold_place(strand) - place);
-        rods[state(strand, strand.edges, FRAME)] += vec4(more, 0.0);
+        rods[slot(strand, strand.edges, FRAME)] += vec4(more, 0.0);
     }
 }
 

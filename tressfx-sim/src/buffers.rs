@@ -46,10 +46,8 @@ pub(crate) struct SectionBuffers {
 pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
-    /// Six `vec4<f32>` a vertex.
+    /// Fourteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other.
     pub(crate) state: BufferId,
-    /// Nine `vec4<f32>` a vertex.
-    pub(crate) scratch: BufferId,
 }
 
 /// The transforms of roots; an element a guide.
@@ -147,8 +145,7 @@ impl RodBuffers {
     fn new(backend: &mut dyn Backend, vertices: u32) -> Result<Self> {
         Ok(Self {
             rest: storage(backend, "hair.rod_rest", 16 * 2, vertices)?,
-            state: storage(backend, "hair.rods", 16 * 6, vertices)?,
-            scratch: storage(backend, "hair.rod_scratch", 16 * 9, vertices)?,
+            state: storage(backend, "hair.rods", 16 * 14, vertices)?,
         })
     }
 }

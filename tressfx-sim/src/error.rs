@@ -37,14 +37,6 @@ pub enum SimError {
         /// How many there may be.
         most: usize,
     },
-    /// A collider would touch a section whose solver has no contacts.
-    #[error("step: collider {collider} does not leave out section {section}, whose solver has no contacts")]
-    NoContacts {
-        /// The index of the collider.
-        collider: usize,
-        /// The index of the section.
-        section: usize,
-    },
     /// There is no such section.
     #[error("section {index} of {count}")]
     NoSection {

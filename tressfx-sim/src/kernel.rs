@@ -30,6 +30,8 @@ const GROUP: u32 = 64;
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
+    ("rod", include_str!("../shaders/rod.wgsl")),
+    ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),

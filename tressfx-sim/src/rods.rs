@@ -21,8 +21,8 @@ pub struct Standing {
 /// The rods of a section at rest, as the kernel takes them.
 #[derive(Debug)]
 pub(crate) struct GpuRods {
-    /// `(2 * vertex + entry) * guides + guide`: half of the rotation that the joint before the edge wants, and the edge's frame at
-    /// rest. The tip has no edge; it has what the strand's bending is multiplied by, how many edges the root holds, the shortest
+    /// `(2 * vertex + entry) * guides + guide`: half of the rotation that the joint before the edge wants, the fourth component of
+    /// which gives way to the edge's length, and the edge's frame at rest. The tip has no edge; it has what the strand's bending is multiplied by, how many edges the root holds, the shortest
     /// length that bends, and 1 if the tip is pinned.
     pub(crate) entries: Vec<Vec4>,
     pub(crate) standing: Standing,
@@ -43,7 +43,8 @@ impl GpuRods {
                 entries[(2 * vertex + entry) * guides + guide] = value;
             };
             for edge in 0..vertices - 1 {
-                set(edge, 0, rest.joints[edge].as_quat().into());
+                let length = strands.rest_lengths[guide * vertices + edge];
+                set(edge, 0, Vec4::from(rest.joints[edge].as_quat()).truncate().extend(length));
                 set(edge, 1, rest.frames[edge].as_quat().into());
             }
             let pinned = rest.held + 1 < vertices && strands.rest[(guide + 1) * vertices - 1].w == 0.0;

@@ -148,7 +148,6 @@ impl HairSim {
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
-        self.check_contacts(input)?;
         let plan = self.clock.advance(input.dt, input.head);
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
@@ -333,18 +332,6 @@ impl HairSim {
     /// Frees everything.
     pub fn destroy(self, backend: &mut dyn Backend) {
         self.owner.destroy(backend);
-    }
-
-    /// Refuses colliders of sections that know no contacts.
-    fn check_contacts(&self, input: &StepInput) -> Result<(), SimError> {
-        let without = |&section: &usize| self.sections[section].solver() == Solver::Direct;
-        for section in (0..self.sections.len()).filter(without) {
-            let touches = input.colliders.iter().position(|collider| !collider.except.contains(&section));
-            if let Some(collider) = touches {
-                return Err(SimError::NoContacts { collider, section });
-            }
-        }
-        Ok(())
     }
 
     fn upload_capsules(&self, list: &mut PassList, capsules: &CapsuleList) {

@@ -15,7 +15,7 @@ pub fn line(vertices: usize, direction: DVec3) -> RodRest {
 }
 
 /// A sub-step of hair of this bending length in metres, in still air that does not hold it.
-pub fn step(length: f64, bending_length: f64) -> RodStep {
+pub fn step(length: f64, bending_length: f64) -> RodStep<'static> {
     RodStep {
         length,
         gravity: DVec3::new(0.0, -G, 0.0),
@@ -28,6 +28,8 @@ pub fn step(length: f64, bending_length: f64) -> RodStep {
         root: DQuat::IDENTITY,
         root_displacement: DVec3::ZERO,
         tip: None,
+        obstacles: &[],
+        friction: 0.0,
         rounds: 2,
     }
 }

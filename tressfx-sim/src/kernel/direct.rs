@@ -27,18 +27,22 @@ const WITH_WIND: [Module; LIBRARY.len() + 1] = {
 pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
     let buffers = maker.buffers;
     let Some(rods) = buffers.rods else { return Ok(None) };
+    // A strand that nothing can touch asks for no capsules.
+    let capsules = maker.shared.capsules;
     let specialization = Specialization::new()
+        .feature("contacts", capsules.is_some())
         .feature("internal_damping", params.internal_damping > 0.0)
         .feature("pull", params.pull_frequency > 0.0)
         .feature("pinned_tips", buffers.pinned_tips);
-    let resources = [
+    let mut resources = vec![
         ("rest", buffers.rest.into()),
-        ("rest_lengths", buffers.rest_lengths.into()),
         ("rod_rest", rods.rest.into()),
         ("rods", rods.state.into()),
-        ("rod_scratch", rods.scratch.into()),
         ("positions", buffers.strands.positions.into()),
         ("non_finite", maker.shared.non_finite.into()),
     ];
+    if let Some(capsules) = capsules {
+        resources.extend([("capsules", capsules.capsules.into()), ("capsule_motions", capsules.motions.into())]);
+    }
     maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
 }

@@ -8,6 +8,7 @@
 //!
 //! Forces are per mass of unit length: a metre of hair has the mass 1, and its bending stiffness is `bending`, m^4/s^2.
 
+mod contact;
 mod guide;
 mod joint;
 mod newton;
@@ -16,6 +17,7 @@ mod stand;
 
 use glam::{DMat3, DQuat, DVec3};
 
+pub use contact::{Obstacle, Touch};
 pub use guide::direct_guide;
 pub use rest::RodRest;
 
@@ -29,10 +31,15 @@ const ANOTHER_ROUND: f64 = 2.0;
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
 const SHORT: f64 = 1.0 / 120.0;
+/// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
+const TOUCHING_ROUNDS: u32 = 4;
+/// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
+const MOST_ROUNDS: u32 = 8;
+const SETTLED: f64 = 1e-5;
 
 /// How a rod moves during a sub-step. Lengths in the unit of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RodStep {
+pub struct RodStep<'a> {
     /// Length of the sub-step, s.
     pub length: f64,
     /// Acceleration by gravity, units/s^2.
@@ -57,11 +64,15 @@ pub struct RodStep {
     pub root_displacement: DVec3,
     /// What holds the tip; `None` where it is free.
     pub tip: Option<TipHold>,
+    /// What it may touch.
+    pub obstacles: &'a [Obstacle],
+    /// Coefficient of Coulomb friction.
+    pub friction: f64,
     /// The most rounds of Newton's method.
     pub rounds: u32,
 }
 
-impl Default for RodStep {
+impl Default for RodStep<'_> {
     /// No time, no forces and no stiffness, on a root that stays where it is.
     fn default() -> Self {
         Self {
@@ -76,6 +87,8 @@ impl Default for RodStep {
             root: DQuat::IDENTITY,
             root_displacement: DVec3::ZERO,
             tip: None,
+            obstacles: &[],
+            friction: 0.0,
             rounds: 2,
         }
     }
@@ -107,6 +120,8 @@ pub struct Rod {
     pub strains: Vec<DVec3>,
     /// The same one sub-step before.
     pub last_strains: Vec<DVec3>,
+    /// What each edge touches.
+    pub touches: Vec<Touch>,
     /// The force that holds the tip, if it is held, times the square of the sub-step.
     pub holding: DVec3,
     /// Whether the past counts: not after a reset, after a change of the sub-step, or after an edge turned too fast.
@@ -125,6 +140,7 @@ impl Rod {
             last_velocities: zeros.clone(),
             strains: vec![DVec3::ZERO; frames.len()],
             last_strains: vec![DVec3::ZERO; frames.len()],
+            touches: vec![Touch::default(); frames.len()],
             holding: DVec3::ZERO,
             has_past: false,
             frames,
@@ -161,11 +177,13 @@ struct Past {
 /// The sub-step as the formula of second order has it, or that of first order where there is no past.
 #[derive(Debug)]
 struct Motion<'a> {
-    step: &'a RodStep,
+    step: &'a RodStep<'a>,
     rest: &'a RodRest,
     /// The length of the sub-step that the formula divides by, s.
     length: f64,
     past: Vec<Past>,
+    /// Where the vertices were, from where the root is now.
+    before: Vec<DVec3>,
     /// The strain that the past says, for the rate of bending.
     past_strains: Vec<DVec3>,
     /// The direction of the hair at each vertex, which the drag asks for.
@@ -173,7 +191,7 @@ struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    fn new(step: &'a RodStep, rest: &'a RodRest, rod: &Rod) -> Self {
+    fn new(step: &'a RodStep<'a>, rest: &'a RodRest, rod: &Rod) -> Self {
         let length = if rod.has_past { step.length * 2.0 / 3.0 } else { step.length };
         let past = |i: usize| {
             let here = rod.positions[i] - step.root_displacement;
@@ -194,6 +212,7 @@ impl<'a> Motion<'a> {
             rest,
             length,
             past: (0..rod.positions.len()).map(past).collect(),
+            before: rod.positions.iter().map(|place| *place - step.root_displacement).collect(),
             past_strains: (0..rod.frames.len()).map(past_strain).collect(),
             along: vec![DVec3::ZERO; rod.positions.len()],
         }
@@ -227,18 +246,25 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 /// One sub-step.
 pub fn direct(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let mut motion = Motion::new(step, rest, rod);
-    let before = rod.positions.clone();
     aim(step, rest, rod);
     let mut turned = 0.0;
-    for _ in 0..step.rounds {
+    let mut touches = vec![Touch::default(); rod.frames.len()];
+    for round in 1..=MOST_ROUNDS {
         motion.along = directions(rod);
         turned = newton::round(&motion, rod);
         rod.place(rest);
-        if turned < ANOTHER_ROUND * step.length * (step.length / SHORT).min(1.0) {
+        touches.splice(rest.held.., (rest.held..rod.frames.len()).map(|edge| motion.touch(rod, edge)));
+        let settled = turned < SETTLED;
+        let touching = !settled && touches.iter().any(|touch| touch.obstacle > 0);
+        let deep = !settled && touches.iter().any(|touch| touch.is_deep);
+        let calm = turned < ANOTHER_ROUND * step.length * (step.length / SHORT).min(1.0);
+        if round >= if touching { TOUCHING_ROUNDS } else { 1 } && (calm || round >= step.rounds) && !deep {
             break;
         }
     }
-    finish(step, &motion, rod, &before, turned < TOO_FAST);
+    let calm = turned < TOO_FAST && !touches.iter().any(|touch| touch.is_new);
+    rod.touches = touches;
+    finish(step, &motion, rod, calm);
 }
 
 /// The direction of the hair at each vertex: the mean of those of the edges beside it.
@@ -269,10 +295,10 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
 }
 
 /// The state that the next sub-step begins with.
-fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, before: &[DVec3], calm: bool) {
+fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
     std::mem::swap(&mut rod.velocities, &mut rod.last_velocities);
-    for (vertex, before) in before.iter().enumerate() {
-        let displacement = rod.positions[vertex] + step.root_displacement - before;
+    for (vertex, before) in motion.before.iter().enumerate() {
+        let displacement = rod.positions[vertex] - before;
         rod.displacements[vertex] = displacement;
         rod.velocities[vertex] = match calm {
             true => (rod.positions[vertex] - motion.past[vertex].place) / motion.length,
@@ -281,7 +307,7 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, before: &[DVec3], calm
     }
     rod.holding = match step.tip {
         Some(hold) => {
-            let error = hold.place - rod.positions[before.len() - 1];
+            let error = hold.place - rod.positions[motion.before.len() - 1];
             rod.holding + newton::hold_stiffness(motion.rest) * error
         }
         None => DVec3::ZERO,

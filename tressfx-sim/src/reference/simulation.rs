@@ -85,7 +85,7 @@ impl<'a> Simulation<'a> {
                 section.move_roots();
                 match section.info.solver {
                     Solver::TressFx => section.each_guide(|step, _, _, guide| integrate(step, guide)),
-                    Solver::Direct => _ = section.rods_step(),
+                    Solver::Direct => _ = section.rods_step(&[]),
                 }
             }
             for sub_step in &plan.sub_steps {
@@ -94,7 +94,7 @@ impl<'a> Simulation<'a> {
                 let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
                 self.non_finite += match section.info.solver {
                     Solver::TressFx => section.sub_step(&capsules, input.wind.is_some()),
-                    Solver::Direct => section.rods_sub_step(),
+                    Solver::Direct => section.rods_sub_step(&capsules),
                 };
             }
         }
@@ -192,17 +192,17 @@ impl<'a> Section<'a> {
     }
 
     /// One sub-step of rods; says how many had become non-finite.
-    fn rods_sub_step(&mut self) -> u64 {
+    fn rods_sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
         self.move_roots();
-        self.rods_step()
+        self.rods_step(capsules)
     }
 
-    fn rods_step(&mut self) -> u64 {
+    fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
         let mut rods = std::mem::take(&mut self.rods);
         let mut non_finite = 0;
         self.each_guide(|step, _, index, guide| {
             let (rest, rod) = &mut rods[index as usize];
-            non_finite += u64::from(direct_guide(step, guide, rest, rod, index));
+            non_finite += u64::from(direct_guide(step, guide, rest, rod, index, capsules));
         });
         self.rods = rods;
         non_finite

@@ -1,17 +1,35 @@
 //! A guide of a groom as a rod.
 
 use glam::{DQuat, DVec3};
+use tressfx_core::shape::Capsule;
 
-use super::{Rod, RodRest, RodStep, TipHold, direct};
+use super::{Obstacle, Rod, RodRest, RodStep, TipHold, direct};
+use crate::collider::CapsuleMotion;
 use crate::reference::Guide;
 use crate::reference::roots::RootMotion;
 use crate::reference::vector::position;
 use crate::reference::wind::wind_of;
 use crate::step::Step;
 
-impl RodStep {
+impl Obstacle {
+    /// A capsule as the rod of a guide meets it; the capsule and its motion are in the space of the head.
+    fn of_guide(step: &Step, root: DVec3, capsule: &Capsule, motion: &CapsuleMotion) -> Self {
+        let head = DQuat::from_vec4(step.head_rotation.as_dvec4());
+        let turn = DQuat::from_vec4(step.head_turn.as_dvec4());
+        let rotation = head * motion.rotation.as_dquat() * head.inverse() * turn;
+        let before = root + step.center_displacement.as_dvec3();
+        Self {
+            ends: [capsule.a, capsule.b].map(|end| head * end.as_dvec3() - root),
+            radii: [capsule.radius_a.into(), capsule.radius_b.into()],
+            rotation,
+            translation: rotation * before + head * motion.translation.as_dvec3() - root,
+        }
+    }
+}
+
+impl<'a> RodStep<'a> {
     /// The sub-step as the rod of a guide feels it. `strand` is the index of the guide: its wind depends on it.
-    fn of_guide(step: &Step, guide: &Guide, root: &RootMotion, strand: u32) -> Self {
+    fn of_guide(step: &Step, guide: &Guide, root: &RootMotion, strand: u32, obstacles: &'a [Obstacle]) -> Self {
         let length = f64::from(step.length);
         let (first, tip) = (position(guide.rest[0]), guide.vertices() - 1);
         let rotation = DQuat::from_vec4(root.rotation);
@@ -28,16 +46,29 @@ impl RodStep {
             root: rotation,
             root_displacement: root.shape(first) - guide.positions[0] + step.center_displacement.as_dvec3(),
             tip: guide.is_pinned(tip).then_some(TipHold { place, frame: None }),
+            obstacles,
+            friction: step.friction.into(),
             rounds: step.rounds,
         }
     }
 }
 
 /// What the kernel does to a guide, [`direct`] or the reset, and its positions. `strand` is the index of the guide. Says whether
-/// it had become non-finite.
-pub fn direct_guide(step: &Step, guide: &mut Guide, rest: &RodRest, rod: &mut Rod, strand: u32) -> bool {
+/// it had become non-finite. `capsules` are in the space of the head, relative to the centre of the groom, as
+/// [`Step::head_rotation`] has them at the end of the sub-step.
+pub fn direct_guide(
+    step: &Step,
+    guide: &mut Guide,
+    rest: &RodRest,
+    rod: &mut Rod,
+    strand: u32,
+    capsules: &[(Capsule, CapsuleMotion)],
+) -> bool {
     let root = guide.root(step);
-    let of_guide = RodStep::of_guide(step, guide, &root, strand);
+    let first: DVec3 = root.shape(position(guide.rest[0]));
+    let obstacles: Vec<_> =
+        capsules.iter().map(|(capsule, motion)| Obstacle::of_guide(step, first, capsule, motion)).collect();
+    let of_guide = RodStep::of_guide(step, guide, &root, strand, &obstacles);
     if step.reset != 0 {
         *rod = Rod::at_rest(rest, of_guide.root);
     } else {
@@ -48,7 +79,6 @@ pub fn direct_guide(step: &Step, guide: &mut Guide, rest: &RodRest, rod: &mut Ro
     if !finite {
         *rod = Rod::at_rest(rest, of_guide.root);
     }
-    let first: DVec3 = root.shape(position(guide.rest[0]));
     for (place, from_root) in guide.positions.iter_mut().zip(&rod.positions) {
         *place = first + *from_root;
     }

@@ -89,11 +89,13 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     let along = rod.frames[edge] * DVec3::Z;
     // The vertex after the edge moves by the one before it and `arm * turn`.
     let arm = -length * cross_matrix(along);
-    let mixed = beyond.mixed + beyond.place * arm;
+    let contacts = motion.contacts(rod, edge);
+    let mixed = beyond.mixed + (beyond.place + contacts.mixed) * arm;
     let half = arm.transpose() * beyond.mixed;
-    let mut turn = beyond.turn + half + half.transpose() + arm.transpose() * beyond.place * arm;
-    let mut torque = beyond.torque + arm.transpose() * beyond.force;
+    let mut turn = beyond.turn + half + half.transpose() + arm.transpose() * (beyond.place + contacts.turn) * arm;
+    let mut torque = beyond.torque + arm.transpose() * (beyond.force + contacts.torque);
     let across = DMat3::IDENTITY - outer(along, along);
+    beyond.pull += contacts.pull;
     // Of the second derivative of a turn only what holds it: tension pulls an edge straight, pressure would let it fall.
     turn += length * along.dot(beyond.pull).max(0.0) * across;
     let correction = rest.mass_correction();
@@ -115,10 +117,10 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     let free = inverse * (torque + own);
     let (mass, force) = motion.inertia(edge, rod.positions[edge]);
     *beyond = Beyond {
-        place: symmetric(beyond.place - mixed * by_place) + mass,
+        place: symmetric(beyond.place + contacts.place - mixed * by_place) + mass,
         mixed: mixed * by_parent,
         turn: symmetric(turn * by_parent),
-        force: beyond.force - mixed * free + force,
+        force: beyond.force + contacts.force - mixed * free + force,
         // Equal to `spring * inverse * (torque + own) - own`, without the difference of two large numbers.
         torque: by_parent.transpose() * torque - turn * (inverse * own),
         pull: beyond.pull + force,
