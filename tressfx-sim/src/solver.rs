@@ -11,8 +11,8 @@ pub enum Solver {
     #[default]
     TressFx,
     /// Rods whose edges turn and never stretch, with bending and twist; all forces are implicit, and all edges of a strand are solved
-    /// for at once. Its material is in SI units and means the same at any resolution and sub-step. It has no contacts yet:
-    /// colliders have to leave its sections out.
+    /// for at once. Its material is in SI units and means the same at any resolution and sub-step. Contacts and friction
+    /// are inside the solve.
     Direct,
 }
 

@@ -1,6 +1,6 @@
 //! A simulation that goes on frame by frame: what `render` and `simulate` share.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use tressfx_sim::metrics::{self, EdgeError};
 use tressfx_sim::{Collider, HairSim, SectionDesc, StepInput, Wind};
 
 use crate::backend;
-use crate::cli::{self, BackendName, SolverName};
+use crate::cli::{self, BackendName};
 use crate::groom::Groom;
 use crate::motion;
 use crate::params::Params;
@@ -35,20 +35,6 @@ pub(crate) struct Run {
     wind: Option<Wind>,
     /// What the hair collides with; it moves with the head.
     colliders: Vec<Collider<'static>>,
-}
-
-/// What the hair collides with. A solver without contacts leaves out what a built-in groom brings.
-fn colliders(args: &cli::Scene, groom: &Groom, params: &Params) -> Result<Vec<Collider<'static>>> {
-    if args.solver == SolverName::Tressfx {
-        return Ok(Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat()));
-    }
-    if !params.capsule.is_empty() {
-        bail!("the solver `direct` has no contacts, and --params has {} capsules", params.capsule.len());
-    }
-    if !groom.capsules.is_empty() {
-        eprintln!("the solver `direct` has no contacts: the body of the groom is left out");
-    }
-    Ok(Vec::new())
 }
 
 /// Says which strands were made stiffer so that they stand in the pose of their file.
@@ -79,7 +65,7 @@ impl Run {
                 SectionDesc::new(strands, params.sim(index).clone()).with_solver(args.solver.solver())
             })
             .collect();
-        let colliders = colliders(args, &groom, &params)?;
+        let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());
         let mut uploads = PassList::new();
         let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
         backend.run(&uploads)?;

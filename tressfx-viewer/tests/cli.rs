@@ -289,18 +289,13 @@ fn adapters_are_listed() {
 }
 
 #[test]
-fn rods_say_that_they_have_no_contacts_and_which_stand() {
+fn rods_say_which_stand_and_refuse_a_material_that_is_none() {
     let folder = folder("rods");
     let simulate = ["simulate", "builtin:wavy:20:12", "--frames", "8", "--solver", "direct", "--out", "pose.tfx"];
     let output = tressfx(&folder, &simulate);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{said}");
-    assert!(said.contains("has no contacts: the body of the groom is left out"), "{said}");
     assert!(said.contains("of 20 guides is raised"), "{said}");
-    let capsule = "[[capsule]]\na = [0.0, 0.0, 0.0]\nb = [0.0, 1.0, 0.0]\nradius_a = 0.1\nradius_b = 0.1\n";
-    std::fs::write(folder.join("capsule.toml"), capsule).unwrap();
-    let (message, code) = fails(&folder, &[&simulate[..], &["--params", "capsule.toml"]].concat());
-    assert!(message.contains("`direct` has no contacts, and --params has 1 capsules") && code == 1, "{message}");
     std::fs::write(folder.join("soft.toml"), "[sim]\nbending_length = 0.0\n").unwrap();
     let (message, _) = fails(&folder, &[&simulate[..], &["--params", "soft.toml"]].concat());
     assert!(message.contains("parameter bending_length = 0 must be from 0.002 to 10"), "{message}");
