@@ -14,7 +14,7 @@ import package::lengths::{Stretching, stretched};
 import package::local_shape::{Shaping, shaped};
 import package::root::{Root, root_of, shape_of};
 import package::step::step;
-import package::vector::{DOWN, NO_LENGTH, direction_or, is_finite};
+import package::vector::{DOWN, direction_or, is_finite};
 import package::wind::{across_edge, wind_of};
 
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
@@ -33,15 +33,13 @@ struct Stored { position: vec3<f32>, past: vec3<f32>, rest: vec4<f32> }
 struct Walk {
     origin: vec3<f32>,
     rest_before: vec3<f32>,
-    shaping: Shaping,
     /// The vertex that the wind is at, and its rest length from its parent.
     calm: vec4<f32>,
     calm_length: f32,
     /// The direction of the last edge that had one.
     edge: vec3<f32>,
-    stretching: Stretching,
     finite: bool,
-    /// The vertex before the one that is stored next, and how far from there nothing touches a capsule.
+    /// The vertex that was stored last, and how far from there nothing touches a capsule.
     @if(capsules) parent: vec3<f32>,
     @if(capsules) free_distance: f32,
 }
@@ -58,9 +56,11 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
     let wind = wind_of(strand);
     var walk: Walk;
+    var shaping: Shaping;
+    var stretching: Stretching;
     walk.finite = true;
     walk.edge = DOWN;
-    for (var k = 0u; k < LOCAL; k++) { walk.shaping.frames[k] = root.rotation; }
+    for (var k = 0u; k < LOCAL; k++) { shaping.frames[k] = root.rotation; }
 
     // `CHUNK` vertices are loaded at once, while the ones before them are worked on: a load cannot be moved up across stores.
     var ahead = loaded(strand, 0u);
@@ -69,11 +69,18 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         if (start + CHUNK < step.vertices) { ahead = loaded(strand, start + CHUNK); }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
-            if (t < step.vertices) { enter(&walk, root, chunk[i], strand, t); }
-            shaped(&walk.shaping, t);
-            if (t > LOCAL) { leave(&walk, root, wind, strand, t - LOCAL - 1u); }
-            walk.calm = walk.shaping.vertices[LOCAL];
-            walk.calm_length = walk.shaping.edges[LOCAL].w;
+            if (t < step.vertices) { enter(&walk, &shaping, root, chunk[i], strand, t); }
+            shaped(&shaping, t);
+            let next = shaping.vertices[LOCAL];
+            if (t > LOCAL) {
+                let vertex = t - LOCAL - 1u;
+                stretched(&stretching, blown(&walk, next.xyz, wind, vertex), walk.calm_length, vertex);
+                if (vertex >= 2u * LENGTHS && vertex < step.vertices + 2u * LENGTHS) {
+                    store(&walk, stretching.vertices[2u * LENGTHS], root, strand, vertex - 2u * LENGTHS);
+                }
+            }
+            walk.calm = next;
+            walk.calm_length = shaping.edges[LOCAL].w;
         }
     }
     if (!walk.finite) {
@@ -93,7 +100,7 @@ fn loaded(strand: u32, start: u32) -> array<Stored, CHUNK> {
 }
 
 /// A vertex is moved freely, and handed to the local shape.
-fn enter(walk: ptr<function, Walk>, root: Root, stored: Stored, strand: u32, vertex: u32) {
+fn enter(walk: ptr<function, Walk>, shaping: ptr<function, Shaping>, root: Root, stored: Stored, strand: u32, vertex: u32) {
     let free = integrated(root, stored.position, stored.past, stored.rest, vertex);
     previous[vertex * step.guides + strand] = vec4(free.past, 0.0);
     if (vertex == 0u) {
@@ -103,28 +110,20 @@ fn enter(walk: ptr<function, Walk>, root: Root, stored: Stored, strand: u32, ver
     let rest_edge = stored.rest.xyz - (*walk).rest_before;
     (*walk).rest_before = stored.rest.xyz;
     let length = sqrt(dot(rest_edge, rest_edge));
-    (*walk).shaping.entered = vec4(free.position - (*walk).origin, stored.rest.w);
-    (*walk).shaping.entered_edge = vec4(direction_or(rest_edge, vec3(0.0)), length);
+    (*shaping).entered = vec4(free.position - (*walk).origin, stored.rest.w);
+    (*shaping).entered_edge = vec4(direction_or(rest_edge, vec3(0.0)), length);
 }
 
-/// The vertex that the local shape is done with meets the wind and goes to the length constraints, and what these are done with is
-/// stored.
-fn leave(walk: ptr<function, Walk>, root: Root, wind: vec3<f32>, strand: u32, vertex: u32) {
-    var blown = (*walk).calm;
-    // All edges are as they were before the wind. The tip has no edge of its own and takes the last one's.
-    if (vertex + 1u < step.vertices) {
-        (*walk).edge = direction_or((*walk).shaping.vertices[LOCAL].xyz - blown.xyz, (*walk).edge);
-    }
-    if (blown.w > 0.0) { blown += vec4(across_edge(wind, (*walk).edge), 0.0); }
-    stretched(&(*walk).stretching, blown, (*walk).calm_length, vertex);
-    if (vertex >= 2u * LENGTHS && vertex < step.vertices + 2u * LENGTHS) {
-        store(walk, root, strand, vertex - 2u * LENGTHS);
-    }
+/// The vertex that the wind is at, after it; `next` is the one after it. All edges are as they were before the wind. The tip has no
+/// edge of its own and takes the last one's.
+fn blown(walk: ptr<function, Walk>, next: vec3<f32>, wind: vec3<f32>, vertex: u32) -> vec4<f32> {
+    let calm = (*walk).calm;
+    if (vertex + 1u < step.vertices) { (*walk).edge = direction_or(next - calm.xyz, (*walk).edge); }
+    return calm + vec4(select(vec3(0.0), across_edge(wind, (*walk).edge), calm.w > 0.0), 0.0);
 }
 
-/// The vertex that all but the capsules are done with.
-fn store(walk: ptr<function, Walk>, root: Root, strand: u32, vertex: u32) {
-    let moved = (*walk).stretching.vertices[2u * LENGTHS];
+/// Stores a vertex that all stages but the capsules are done with.
+fn store(walk: ptr<function, Walk>, moved: vec4<f32>, root: Root, strand: u32, vertex: u32) {
     var point = (*walk).origin + moved.xyz;
     @if(capsules) {
         (*walk).free_distance -= distance(point, (*walk).parent);

@@ -24,9 +24,9 @@ pub struct SimParams {
     pub damping: f32,
     /// Of `TressFx`: how stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
     /// allow. It is the share of the distance to its place that an edge moves in 1/60 s; what one sees is the stiffness of a
-    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. It is no material: more vertices
-    /// and more iterations make strands softer. Of two vertices each moves by half of it, and one whose parent is pinned by half
-    /// too, as in TressFX.
+    /// spring, `s / (1 - s)`. As in TressFX, what is above 0.95 counts as 0.95 (short strands would flicker between two states), and
+    /// a vertex moves by half of the share, even if its parent is pinned. It is no material: more vertices make strands softer,
+    /// and curls may tremble.
     pub local_stiffness: f32,
     /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness.
     pub local_iterations: u32,
@@ -87,7 +87,7 @@ impl Default for SimParams {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             damping: 0.08,
-            local_stiffness: 0.9999,
+            local_stiffness: 0.9,
             local_iterations: 2,
             global_stiffness: 0.2,
             global_range: 1.0,

@@ -22,6 +22,8 @@ use crate::wind::Wind;
 
 /// The length of the step for which TressFX states stiffness and damping, s.
 pub const REFERENCE_STEP: f64 = 1.0 / 60.0;
+/// A stiffer local shape counts as this, as in TressFX: short strands would flicker between two states.
+const STIFFEST_LOCAL: f32 = 0.95;
 
 gpu_struct! {
     /// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one
@@ -156,7 +158,7 @@ impl Step {
             Solver::Direct => (corner.as_dvec3() / metres).as_vec3().extend(0.0),
         };
         let iterations = f64::from(params.local_iterations);
-        let local = spring_share(params.local_stiffness, sub.length);
+        let local = spring_share(params.local_stiffness.min(STIFFEST_LOCAL), sub.length);
         let shocked = sub.head_acceleration * info.metres_per_unit > params.shock_acceleration;
         Self {
             head_rotation: sub.head_rotation.into(),

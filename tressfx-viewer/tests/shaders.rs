@@ -234,6 +234,9 @@ fn one_kernel_is_chosen_by_its_name() {
     let output = tressfx(&folder, &["--kernel", "hair.sim.tresfx", "--out", "none"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));
-    assert!(message.contains("`hair.sim.tresfx`") && message.contains("hair.sim.tangents, hair.sim.tressfx"), "{message}");
+    assert!(
+        message.contains("`hair.sim.tresfx`") && message.contains("hair.sim.tangents, hair.sim.tressfx"),
+        "{message}"
+    );
     assert!(!folder.join("none").exists());
 }

@@ -69,9 +69,8 @@ fn integrate(step: &Step, guide: &mut Guide, root: &RootMotion) {
             continue;
         }
         let (here, before) = (shocked(step, root, guide.positions[i]), shocked(step, root, guide.previous[i]));
-        let mut goal = here
-            + f64::from(step.velocity_kept) * bounded(step, root, here - before, before)
-            + step.gravity.as_dvec3();
+        let mut goal =
+            here + f64::from(step.velocity_kept) * bounded(step, root, here - before, before) + step.gravity.as_dvec3();
         if (i as f32) < step.global_range * guide.vertices() as f32 {
             goal += f64::from(step.global_stiffness) * (shape - goal);
         }
