@@ -5,8 +5,7 @@
 //! with `--frames=60 builtin:long:16384:32 builtin:curly`.
 //!
 //! Times are from the GPU's timestamps, the median and the least; frames of all settings take turns. The tips are compared
-//! with those at a sub-step of 1/960 s: that is no limit where curls are so stiff that they tremble at small sub-steps
-//! (`ClockParams::sub_step`).
+//! with those at a sub-step of 1/960 s: that is no limit where curls are so stiff that they tremble at small sub-steps.
 //!
 //! The bench `passes` times the passes at the default setting with criterion; this one compares settings. With `--test` it does as
 //! little as shows that it runs.

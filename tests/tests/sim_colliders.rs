@@ -184,6 +184,5 @@ fn sections_share_their_kernels() {
     let (short, long) = (random_strands(10, 6, 1, 1), random_strands(30, 11, 2, 2));
     let descs = [&short, &long].map(|strands| SectionDesc::new(strands, SimParams::default()));
     let of_one = compiled(&descs[..1]);
-    // Only the length constraints are compiled for how many vertices they load at once.
-    assert!(compiled(&descs) <= of_one + 1, "{} {of_one}", compiled(&descs));
+    assert_eq!(compiled(&descs), of_one);
 }

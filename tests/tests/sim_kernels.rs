@@ -1,4 +1,5 @@
-//! Each kernel, applied once, against its f64 reference: on random strands of many counts and on real grooms.
+//! The kernels of the published method, applied once, against their f64 references: on random strands of many counts and on real
+//! grooms, each feature by itself.
 
 mod support;
 
@@ -21,6 +22,30 @@ fn params() -> SimParams {
     SimParams { global_stiffness: 0.3, global_range: 0.6, ..SimParams::default() }
 }
 
+/// What of a sub-step is held to its reference.
+struct Case {
+    name: &'static str,
+    params: SimParams,
+    wind: bool,
+    capsules: bool,
+}
+
+/// All at once, and each feature by itself on chains that know gravity and lengths alone.
+fn cases() -> Vec<Case> {
+    let chain = SimParams { global_stiffness: 0.0, local_stiffness: 0.0, ..SimParams::default() };
+    let no_lengths = SimParams { length_iterations: 0, ..chain.clone() };
+    let case = |name, params| Case { name, params, wind: false, capsules: false };
+    vec![
+        Case { wind: true, capsules: true, ..case("all", params()) },
+        case("lengths", chain.clone()),
+        case("many iterations", SimParams { length_iterations: 7, local_iterations: 5, ..params() }),
+        case("global shape", SimParams { global_stiffness: 0.3, global_range: 0.6, ..no_lengths.clone() }),
+        case("local shape", SimParams { local_stiffness: 0.9, ..no_lengths.clone() }),
+        Case { wind: true, ..case("wind", params()) },
+        Case { capsules: true, ..case("capsules", no_lengths) },
+    ]
+}
+
 /// A ball inside of the roots of the random strands, and two solids among the tips.
 fn capsules(strands: &Strands) -> Vec<Capsule> {
     let tips: Vec<Vec3> =
@@ -36,7 +61,7 @@ fn capsules(strands: &Strands) -> Vec<Capsule> {
 
 /// A sub-step in which everything happens. It moves vertices by less than the edges of the shortest strands are long: further
 /// than that, where an edge points is a matter of rounding.
-fn step(strands: &Strands) -> Step {
+fn step(strands: &Strands, case: &Case) -> Step {
     let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.003, -0.002, 0.004);
     let rotation = turn * Motion::wild(strands).head(0.2).rotation;
     let sub_step = SubStep {
@@ -45,7 +70,8 @@ fn step(strands: &Strands) -> Step {
         center_displacement: Vec3::new(0.0003, -0.0004, 0.0005) / strands.metres_per_unit,
         ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
-    Step::new(&params(), &SectionInfo::of(strands), &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
+    let wind = case.wind.then(|| Wind::new(Vec3::new(-0.6, 0.2, 0.4)));
+    Step::new(&case.params, &SectionInfo::of(strands), &sub_step, wind.as_ref())
 }
 
 /// Positions and previous positions of the guides, in f64.
@@ -56,10 +82,10 @@ fn state(rig: &mut Rig) -> State {
     (wide(&rig.positions(0)[..guides]), wide(&rig.previous(0)))
 }
 
-/// The reference of a stage, applied to all guides.
-fn expected(stage: Stage, rig: &Rig, step: &Step, capsules: &[(Capsule, CapsuleMotion)], state: &mut State) {
+/// The reference, applied to all guides.
+fn expected(rig: &Rig, case: &Case, step: &Step, capsules: &[(Capsule, CapsuleMotion)], state: &mut State) {
     let (strands, rest) = (&rig.strands[0], rig.rest(0));
-    let (vertices, params) = (strands.vertices as usize, params());
+    let vertices = strands.vertices as usize;
     for guide in 0..strands.guides as usize {
         let range = guide * vertices..(guide + 1) * vertices;
         let mut of_guide = Guide {
@@ -69,47 +95,44 @@ fn expected(stage: Stage, rig: &Rig, step: &Step, capsules: &[(Capsule, CapsuleM
             previous: &mut state.1[range],
             own_root: None,
         };
-        match stage {
-            Stage::Integrate => reference::integrate(step, &mut of_guide),
-            Stage::LocalShape => {
-                reference::local_shape(step, &mut of_guide, params.local_iterations);
-            }
-            Stage::Wind => reference::wind(step, &mut of_guide, guide as u32),
-            Stage::Lengths => reference::lengths(step, &mut of_guide, params.length_iterations),
-            Stage::Recovery => assert!(!reference::recovery(step, &mut of_guide), "guide {guide} is finite"),
-            Stage::Collide => reference::collide(step, &mut of_guide, capsules),
-            _ => {}
-        }
+        let spoiled = reference::tressfx(step, &case.params, &mut of_guide, guide as u32, capsules);
+        assert!(!spoiled, "guide {guide} is finite");
     }
 }
 
-/// Runs a groom for a while, then each kernel once, from the GPU's own state before it.
-fn check(name: &str, strands: Strands) {
-    let capsules = capsules(&strands);
-    let (step, motion) = (step(&strands), Motion::wild(&strands));
-    let Some(mut rig) = rig(strands, params(), &capsules) else { return };
+/// Runs a groom for a while, then the kernel of each case once, from the GPU's own state before it.
+fn check(name: &str, strands: &Strands) {
+    for case in cases() {
+        check_case(&format!("{name}, {}", case.name), strands.clone(), &case);
+    }
+}
+
+fn check_case(name: &str, strands: Strands, case: &Case) {
+    let capsules = if case.capsules { capsules(&strands) } else { vec![] };
+    let (step, motion) = (step(&strands, case), Motion { wind: None, ..Motion::wild(&strands) });
+    let Some(mut rig) = rig(strands, case.params.clone(), &capsules) else { return };
     rig.play(&motion, 0.2, 60);
     let capsules = rig.centered();
-    let mut touched = false;
-    for &stage in Solver::TressFx.stages() {
-        let before = state(&mut rig);
-        rig.stage(&step, stage);
-        let after = (rig.positions(0), rig.previous(0));
-        let mut reference = before.clone();
-        expected(stage, &rig, &step, &capsules, &mut reference);
-        let guides = reference.0.len();
-        for (gpu, reference) in [(&after.0[..guides], &reference.0), (&after.1[..], &reference.1)] {
-            let errors = strand_errors(&rig.strands[0], gpu, reference);
-            let (median, largest) = (errors[errors.len() / 2], errors[errors.len() - 1]);
-            println!("{name} {}: {median:.1e} (median) {largest:.1e} (largest) of strand length", stage.label());
-            assert!(largest <= TOLERANCE, "{name} {}: {largest:e}", stage.label());
-        }
-        let changed = reference.0 != before.0;
-        let may_rest = matches!(stage, Stage::Roots | Stage::Recovery | Stage::Collide);
-        assert!(changed || rig.strands[0].vertices == 2 || may_rest, "{name} {} moves", stage.label());
-        touched |= changed && stage == Stage::Collide;
+    let before = state(&mut rig);
+    rig.stage(&step, Stage::TressFx);
+    let after = (rig.positions(0), rig.previous(0));
+    let mut reference = before.clone();
+    expected(&rig, case, &step, &capsules, &mut reference);
+    let guides = reference.0.len();
+    for (gpu, reference) in [(&after.0[..guides], &reference.0), (&after.1[..], &reference.1)] {
+        let errors = strand_errors(&rig.strands[0], gpu, reference);
+        let (median, largest) = (errors[errors.len() / 2], errors[errors.len() - 1]);
+        // Next to the axis of a capsule rounding decides on the side to which a vertex is pushed.
+        let held = if case.capsules { errors[(errors.len() - 1) * 99 / 100] } else { largest };
+        println!("{name}: {median:.1e} (median) {held:.1e} (held) {largest:.1e} (largest) of strand length");
+        assert!(held <= TOLERANCE && largest.is_finite(), "{name}: {held:e}");
     }
-    assert!(touched || rig.strands[0].guides < 60 || rig.strands[0].vertices == 2, "{name}: something collides");
+    assert!(reference.0 != before.0, "{name} moves");
+    if case.capsules && rig.strands[0].guides >= 60 && rig.strands[0].vertices > 2 {
+        let mut without = before;
+        expected(&rig, case, &step, &[], &mut without);
+        assert!(without.0 != reference.0, "{name}: something collides");
+    }
     check_frame_end(name, &mut rig, &step);
 }
 
@@ -152,14 +175,14 @@ fn sum_of_directions(points: &[DVec3], vertex: usize) -> f64 {
 #[test]
 fn kernels_match_their_references_for_every_vertex_count() {
     for vertices in [2, 3, 4, 7, 32, 256] {
-        check(&format!("random of {vertices} vertices"), random_strands(65, vertices, 2, u64::from(vertices)));
+        check(&format!("random of {vertices} vertices"), &random_strands(65, vertices, 2, u64::from(vertices)));
     }
 }
 
 #[test]
 fn kernels_match_their_references_for_every_strand_count() {
     for guides in [1, 63, 64, 65] {
-        check(&format!("{guides} random"), random_strands(guides, 16, 1, u64::from(guides)));
+        check(&format!("{guides} random"), &random_strands(guides, 16, 1, u64::from(guides)));
     }
 }
 
@@ -169,7 +192,7 @@ fn kernels_match_their_references_with_both_ends_pinned() {
     for strand in strands.rest.chunks_mut(12) {
         strand[11].w = 0.0;
     }
-    check("both ends pinned", strands);
+    check("both ends pinned", &strands);
 }
 
 /// The first guide has no edge with a length, the second none at its root, the third none at its tip; follow strands have none
@@ -198,7 +221,7 @@ fn tangents_where_edges_have_no_length() {
 #[test]
 fn kernels_match_their_references_on_real_grooms() {
     for path in REAL {
-        real(path).into_iter().for_each(|strands| check(path, strands));
+        real(path).into_iter().for_each(|strands| check(path, &strands));
     }
 }
 

@@ -3,7 +3,8 @@
 mod support;
 
 use glam::{Quat, Vec3, Vec4, Vec4Swizzles};
-use tressfx_conformance::sim::{Motion, REAL, builtin, random_strands, real};
+use tressfx_conformance::sim::{Motion, REAL, builtin, random_strands, real, strands_of};
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::shape::Capsule;
@@ -44,35 +45,30 @@ fn labels(params: SimParams, capsules: &[Capsule], strands: &Strands, motion: &M
 const NEXT_TO_NOTHING: f32 = 1e-30;
 
 #[test]
-fn passes_without_an_effect_are_left_out_and_the_result_is_the_same() {
+fn what_has_no_effect_changes_no_bit() {
     let params = SimParams::default();
     let motion = Motion::wild(&strands());
-    let without = |params: &SimParams, label| {
-        assert!(!labels(params.clone(), &[], &strands(), &motion).contains(&label), "{label} is left out");
-        state(params.clone(), &[], &motion)
-    };
-    let with = |params: &SimParams, capsules: &[Capsule], label| {
-        assert!(labels(params.clone(), capsules, &strands(), &motion).contains(&label), "{label} is there");
-        state(params.clone(), capsules, &motion)
-    };
     let zero = SimParams { local_stiffness: 0.0, ..params.clone() };
     let tiny = SimParams { local_stiffness: NEXT_TO_NOTHING, ..params.clone() };
-    let (Some((without_it, _)), Some((with_it, _))) =
-        (without(&zero, "hair.sim.local_shape"), with(&tiny, &[], "hair.sim.local_shape"))
-    else {
-        return;
-    };
-    // It takes the root away and adds it again, which is not the same to the bit.
-    let apart = without_it.iter().zip(&with_it).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max);
-    assert!(apart < 1e-5, "hair.sim.local_shape: {apart:e} m");
+    assert_eq!(state(zero, &[], &motion), state(tiny, &[], &motion), "local shape");
     let zero = SimParams { wind_drag: 0.0, ..params.clone() };
     let tiny = SimParams { wind_drag: NEXT_TO_NOTHING, ..params.clone() };
-    assert_eq!(without(&zero, "hair.sim.wind"), with(&tiny, &[], "hair.sim.wind"));
+    assert_eq!(state(zero, &[], &motion), state(tiny, &[], &motion), "wind");
     let far = Capsule { a: Vec3::splat(9.0), b: Vec3::splat(9.5), radius_a: 1.0, radius_b: 0.5 };
-    assert_eq!(without(&params, "hair.sim.collide"), with(&params, &[far], "hair.sim.collide"));
+    assert_eq!(state(params.clone(), &[], &motion), state(params.clone(), &[far], &motion), "capsules");
     let zero = SimParams { global_stiffness: 0.0, ..params.clone() };
     let tiny = SimParams { global_stiffness: NEXT_TO_NOTHING, ..params };
-    assert_eq!(state(zero, &[], &motion), state(tiny, &[], &motion));
+    assert_eq!(state(zero, &[], &motion), state(tiny, &[], &motion), "global shape");
+}
+
+#[test]
+fn a_sub_step_is_one_pass_and_a_frame_one_more() {
+    let motion = Motion::wild(&strands());
+    let capsule = Capsule { a: Vec3::ZERO, b: Vec3::Y, radius_a: 0.1, radius_b: 0.1 };
+    for capsules in [&[][..], &[capsule]] {
+        let expected = [Stage::TressFx, Stage::Tangents].map(Stage::label);
+        assert_eq!(labels(SimParams::default(), capsules, &strands(), &motion), expected);
+    }
 }
 
 #[test]
@@ -97,11 +93,6 @@ fn guides_do_not_care_for_their_follow_strands() {
 #[test]
 fn a_head_that_has_not_moved_gives_no_shock() {
     let motion = Motion::still(&strands());
-    let stages = labels(SimParams::default(), &[], &strands(), &motion);
-    let expected: Vec<_> = [Stage::Integrate, Stage::LocalShape, Stage::Lengths, Stage::Recovery, Stage::Tangents]
-        .map(Stage::label)
-        .into();
-    assert_eq!(stages, expected);
     let shocked = |shock: f32| state(SimParams { shock, ..SimParams::default() }, &[], &motion);
     let [Some(without), Some(with)] = [shocked(0.0), shocked(1.0)] else { return };
     assert_eq!(without, with);
@@ -146,7 +137,7 @@ fn sections_of_different_shapes_do_not_disturb_each_other() {
 }
 
 #[test]
-fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
+fn vertices_end_outside_of_capsules() {
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::Y * 0.02, radius_a: 0.098, radius_b: 0.09 };
     let post = Capsule { a: Vec3::new(0.2, -0.5, 0.0), b: Vec3::new(0.2, 0.5, 0.0), radius_a: 0.05, radius_b: 0.02 };
     let soft = SimParams { global_stiffness: 0.02, local_stiffness: 0.5, ..SimParams::default() };
@@ -160,11 +151,9 @@ fn vertices_end_outside_of_capsules_and_edges_keep_their_lengths() {
     };
     let deepest = positions.iter().filter(|position| position.w > 0.0).map(depth).fold(f32::INFINITY, f32::min);
     let touching = positions.iter().filter(|position| depth(position).abs() < 1e-6).count();
-    let error = metrics::edge_error(&rig.strands[0], &positions);
-    println!("deepest {deepest:.1e} m, {touching} vertices touch, edge error {error:?}");
+    println!("deepest {deepest:.1e} m, {touching} vertices touch");
     assert!(deepest > -1e-5, "{deepest}");
     assert!(touching > 100, "{touching}");
-    assert!(error.rms < 6e-6, "{error:?}");
 }
 
 #[test]
@@ -175,14 +164,12 @@ fn strands_that_are_pinned_at_both_ends_hang_between_them() {
     let motion = Motion::wild(&rig.strands[0]);
     rig.play(&motion, 1.0, 60);
     let (positions, head) = (rig.world(0), motion.head(1.0));
-    let error = metrics::edge_error(&rig.strands[0], &positions);
-    println!("both ends pinned: {error:?}");
-    assert!(error.rms < 6e-3 && error.max < 0.05, "{error:?}");
     for (strand, rest) in positions.chunks(12).zip(rig.strands[0].rest.chunks(12)) {
         for vertex in [0, 11] {
             assert!(strand[vertex].truncate().distance(head.transform(rest[vertex].truncate())) < 1e-5);
         }
     }
+    assert_eq!((metrics::non_finite(&positions), rig.non_finite()), (0, 0));
 }
 
 #[test]
@@ -258,7 +245,7 @@ fn a_teleport_resets_and_a_fast_head_does_not() {
 }
 
 #[test]
-fn stress_leaves_strands_finite_and_their_lengths_right() {
+fn stress_leaves_strands_finite() {
     let extremes = [
         SimParams { local_stiffness: 0.0, global_stiffness: 0.0, ..SimParams::default() },
         SimParams { local_stiffness: 1.0, global_stiffness: 1.0, ..SimParams::default() },
@@ -284,9 +271,42 @@ fn stress_leaves_strands_finite_and_their_lengths_right() {
             assert!(dt < 1.0 || (report.dropped > 9.8), "{report:?}");
         }
         let positions = rig.positions(0);
-        let error = metrics::edge_error(&rig.strands[0], &positions);
         assert_eq!((metrics::non_finite(&positions), rig.non_finite()), (0, 0), "{params:?}");
-        assert!(error.max < 1e-3, "{params:?}: {error:?}");
+    }
+}
+
+/// Strands that are all alike, as many vertices as `points` gives, in metres.
+fn alike(name: &str, points: impl IntoIterator<Item = Vec3>) -> Strands {
+    let points: Vec<_> = points.into_iter().map(|point| point.to_array()).collect();
+    let count = points.len() as u32;
+    strands_of(HairAsset::new(name, AssetFormat::Builtin, points, vec![count]), 0)
+}
+
+#[test]
+fn hostile_strands_stay_finite() {
+    let along = |i: u32| 0.02 * i as f32;
+    let hostile = [
+        alike("one point", (0..12).map(|_| Vec3::Y)),
+        alike("points in pairs", (0..12).map(|i| Vec3::X * along(i / 2))),
+        alike("hairpins", (0..12).map(|i| Vec3::new(along(i % 2), 1e-4 * i as f32, 0.0))),
+        alike("back on itself", (0..12).map(|i| Vec3::X * along(i % 2))),
+        alike("tiny", (0..12).map(|i| 1e-7 * along(i) * Vec3::ONE)),
+        alike("huge", (0..12).map(|i| 1e4 * along(i) * Vec3::new(1.0, -2.0, 0.5))),
+        alike("uneven", (0..12).map(|i| Vec3::X * 1e-3 * (0.7 * i as f32).exp2())),
+        alike("two", (0..2).map(|i| Vec3::X * along(i))),
+        alike("many", (0..256).map(|i| 0.1 * Vec3::X * along(i))),
+    ];
+    let stiff = SimParams { local_stiffness: 1.0, global_stiffness: 1.0, ..SimParams::default() };
+    let limp = SimParams { local_stiffness: 0.0, global_stiffness: 0.0, length_iterations: 16, ..SimParams::default() };
+    for strands in hostile {
+        let center = strands.rest[0].truncate();
+        let ball = Capsule { a: center, b: center, radius_a: 0.03, radius_b: 0.03 };
+        for params in [SimParams::default(), stiff.clone(), limp.clone()] {
+            let Some(mut rig) = rig(strands.clone(), params, &[ball]) else { return };
+            rig.play(&Motion::wild(&strands), 0.5, 60);
+            let positions = rig.positions(0);
+            assert_eq!((metrics::non_finite(&positions), rig.non_finite()), (0, 0), "{}", strands.name);
+        }
     }
 }
 
@@ -409,9 +429,5 @@ fn a_long_shake_leaves_nothing_non_finite() {
         rig.frame(&motion.input(f64::from(frame) / 60.0, 1.0 / 60.0));
     }
     let positions = rig.positions(0);
-    let error = metrics::edge_error(&rig.strands[0], &positions);
-    let resets = rig.non_finite();
-    println!("{} after {frames} frames: {error:?}, {resets} resets", rig.strands[0].name);
-    assert_eq!((metrics::non_finite(&positions), resets), (0, 0));
-    assert!(error.rms < 4e-3 && error.max < 0.4, "{error:?}");
+    assert_eq!((metrics::non_finite(&positions), rig.non_finite()), (0, 0), "{}", rig.strands[0].name);
 }

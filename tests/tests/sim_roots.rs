@@ -74,7 +74,8 @@ fn twisted(strands: &Strands, seconds: f64) -> Vec<Pose> {
 
 #[test]
 fn rigid_hair_follows_the_roots_of_a_twisting_scalp() {
-    let rigid = SimParams { gravity: Vec3::ZERO, global_stiffness: 1.0, shock: 1.0, ..SimParams::default() };
+    let rigid =
+        SimParams { gravity: Vec3::ZERO, global_stiffness: 1.0, global_range: 1.0, shock: 1.0, ..SimParams::default() };
     let Some(mut rig) = own_roots(rigid) else { return };
     let motion = Motion::turning(&strands());
     let mut roots = Vec::new();

@@ -166,7 +166,7 @@ render)
         --stats) echo '{"backend": "wgpu", "adapter": "none", "frames": 2,
             "passes": [{"label": "hair.render.tile_bin", "median_ms": 1.0, "frames": 2},
                        {"label": "hair.render.fill", "median_ms": 5, "frames": 1},
-                       {"label": "hair.sim.integrate", "median_ms": 9, "frames": 2}],
+                       {"label": "hair.sim.tressfx", "median_ms": 9, "frames": 2}],
             "render": {"fragments": 7, "dropped": 1, "oit_bytes": 5}}' > "$2" ;;
         esac
         shift

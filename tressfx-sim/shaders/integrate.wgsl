@@ -1,40 +1,21 @@
-// Velocity shock propagation, Verlet integration with damping and gravity, and the pull towards the global shape; or back to the
-// rest pose. It is also the kernel that brings positions from the centre of the last sub-step to that of this one. One thread a
-// vertex of a guide.
+// Velocity shock propagation, Verlet integration with damping and gravity, and the pull towards the global shape. Also what brings
+// a vertex from the centre of the last sub-step to that of this one.
 
-import package::grid::{GROUP, thread_index};
-import package::root::{Root, carried, root_of, shape_of};
+import package::root::{Root, carried, shape_of};
 import package::step::step;
 import package::vector::rotate;
 
-@group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
-@group(0) @binding(2) var<storage, read_write> previous: array<vec4<f32>>;
-@group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
+/// A vertex before the constraints, and where it was one sub-step ago.
+struct Free { position: vec3<f32>, past: vec3<f32> }
 
-@compute @workgroup_size(GROUP)
-fn integrate(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-             @builtin(local_invocation_index) lane: u32) {
-    let guide = thread_index(group, groups, lane);
-    if (guide >= step.guides) { return; }
-    let vertex = group.z;
-    let i = vertex * step.guides + guide;
-    let place = vertex * step.strands + guide;
-
-    let root = root_of(guide);
-    let rest_here = rest[i];
-    let shape = shape_of(root, rest_here.xyz);
-    if (step.reset != 0u || rest_here.w == 0.0) {
-        // A pinned vertex goes where its root takes it, so its past does not matter.
-        positions[place] = vec4(shape, rest_here.w);
-        previous[i] = vec4(shape, 0.0);
-        return;
-    }
-    let last = positions[place].xyz;
-    let past = previous[i].xyz;
+/// Moves a vertex freely from `last`; it was at `past` before. Both are relative to the centre of the last sub-step.
+fn integrated(root: Root, last: vec3<f32>, past: vec3<f32>, rest: vec4<f32>, vertex: u32) -> Free {
+    let shape = shape_of(root, rest.xyz);
+    // A pinned vertex goes where its root takes it, so its past does not matter.
+    if (rest.w == 0.0) { return Free(shape, shape); }
     let here = shocked(root, last);
-    let free = moved_on(root, here, shocked_displacement(root, last - past), shocked(root, past));
-    previous[i] = vec4(here, 0.0);
-    positions[place] = vec4(pulled_to_shape(free, shape, vertex), rest_here.w);
+    let moved = moved_on(root, here, shocked_displacement(root, last - past), shocked(root, past));
+    return Free(pulled_to_shape(moved, shape, vertex), here);
 }
 
 /// A point that has made its share of the root's motion at once, so that a quick head does not leave its hair behind and the
@@ -66,13 +47,11 @@ fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> 
     return remaining + relative * (step.max_displacement * inverseSqrt(squared));
 }
 
-/// A vertex after the pull towards where its root takes the rest pose. The pull is full at the root and nothing at the end of
-/// its range: a strand has no kink where it ends.
+/// A vertex after the pull towards where its root takes the rest pose, if it is within the range.
 fn pulled_to_shape(point: vec3<f32>, shape: vec3<f32>, vertex: u32) -> vec3<f32> {
     @if(!global_shape) { return point; }
     @if(global_shape) {
-        let along = f32(vertex) / f32(step.vertices - 1u) / step.global_range;
-        let fade = max(1.0 - along * along, 0.0);
-        return point + step.global_stiffness * fade * (shape - point);
+        if (f32(vertex) >= step.global_range * f32(step.vertices)) { return point; }
+        return point + step.global_stiffness * (shape - point);
     }
 }

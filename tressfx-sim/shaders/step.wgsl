@@ -18,7 +18,7 @@ struct Step {
     /// Displacement by the wind from the four corners of its cone, across an edge; for the solver `Direct` its velocity, units/s.
     wind: array<vec4<f32>, 4>,
     global_stiffness: f32,
-    /// Share of the strand, from the root, that the global shape reaches.
+    /// Share of the strand's vertices, from the root, that the global shape reaches.
     global_range: f32,
     /// Share of the distance to the rest shape that one iteration moves, by both vertices of an edge together.
     local_stiffness: f32,
@@ -27,8 +27,6 @@ struct Step {
     tip_separation: f32,
     /// Share of the head's motion that the strands make at once.
     shock: f32,
-    /// Share by which the displacement of a vertex is moved towards the mean of its neighbours' displacements.
-    smoothing: f32,
     /// Not 0: the strands go to their rest pose, at rest.
     reset: u32,
     /// Guides of the section.
@@ -37,8 +35,6 @@ struct Step {
     strands: u32,
     /// Vertices of each strand.
     vertices: u32,
-    /// Iterations of the local shape constraints.
-    local_iterations: u32,
     /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
     root_share: f32,
     /// The first capsule that the section collides with.
@@ -63,6 +59,7 @@ struct Step {
     pull: f32,
     /// The most rounds of Newton's method.
     rounds: u32,
+    padding: vec2<f32>,
 }
 
 @group(0) @binding(0) var<uniform> step: Step;

@@ -1,17 +1,11 @@
 //! The kernels: one file of WGSL in `shaders/`, one function here and one in [`crate::reference`], all of the same name.
 //!
-//! What a kernel does to the vertices of a strand is in functions beside its entry point, which read and write no buffers of
-//! strands, so that a kernel that does the work of several can import them.
+//! What the kernels of both solvers ask for, and the stages of `tressfx`, are in modules without an entry point.
 
-pub(crate) mod collide;
 pub(crate) mod direct;
-pub(crate) mod integrate;
-pub(crate) mod lengths;
-pub(crate) mod local_shape;
-pub(crate) mod recovery;
 pub(crate) mod roots;
 pub(crate) mod tangents;
-pub(crate) mod wind;
+pub(crate) mod tressfx;
 
 use std::sync::Arc;
 
@@ -29,12 +23,17 @@ const GROUP: u32 = 64;
 /// The WGSL modules that the kernels share.
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
+    ("contact", include_str!("../shaders/contact.wgsl")),
+    ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
+    ("lengths", include_str!("../shaders/lengths.wgsl")),
+    ("local_shape", include_str!("../shaders/local_shape.wgsl")),
     ("rod", include_str!("../shaders/rod.wgsl")),
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
+    ("wind", include_str!("../shaders/wind.wgsl")),
 ];
 
 /// A kernel with everything that it needs to run.
@@ -120,68 +119,11 @@ impl PassMaker<'_> {
         Grid::for_threads(self.buffers.strands.shape.guides, GROUP)
     }
 
-    /// A thread a vertex of a guide: along z the vertices.
-    fn guide_vertices(&self) -> Grid {
-        let Grid([x, y, _]) = self.guides();
-        Grid([x, y, self.buffers.strands.shape.vertices])
-    }
-
     /// A thread a vertex of any strand: along x the guides, along y what each of them has, itself and its follow strands, along
     /// z the vertices. Where there are too many guides, a thread does the work of several.
     fn strand_vertices(&self) -> Grid {
         let shape = &self.buffers.strands.shape;
         let groups = shape.guides.div_ceil(GROUP).clamp(1, Grid::MAX_GROUPS);
         Grid([groups, 1 + shape.follows, shape.vertices])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The work of several kernels in one, on the vertices of a strand in registers.
-    const FUSED: &str = "
-        import package::integrate::{moved_on, shocked};
-        import package::lengths::{Placing, Window, place, sweep};
-        import package::local_shape::{BentEdge, bent};
-        import package::root::root_of;
-        import package::step::step;
-        import package::tangents::{Neighborhood, beside, directions};
-        import package::vector::DOWN;
-        import package::wind::{across_edge, wind_of};
-
-        @group(0) @binding(1) var<storage, read_write> strand: array<vec4<f32>>;
-
-        @compute @workgroup_size(1)
-        fn fused() {
-            let root = root_of(0u);
-            let last = shocked(root, strand[0].xyz);
-            let free = moved_on(root, last, DOWN, shocked(root, strand[1].xyz)) + across_edge(wind_of(0u), DOWN);
-            let edge = bent(BentEdge(root.rotation, vec4(last, 0.0), vec4(free, 1.0)), DOWN);
-            var window: Window;
-            var placing = Placing(edge.here, last, vec3(0.0), vec3(0.0), DOWN);
-            sweep(&window, edge.next, 1.0, 1u);
-            strand[1] = vec4(place(&placing, window.vertices[SWEEPS], window.lengths[SWEEPS], last, last, false), 1.0);
-            strand[0] = placing.parent;
-            let follow = beside(Neighborhood(DOWN, placing.parent.xyz, DOWN), DOWN, 1u);
-            strand[2] = vec4(directions(follow, 1u), 0.0);
-        }";
-
-    #[test]
-    fn one_kernel_can_do_the_work_of_several() {
-        let kernels = [integrate::SOURCE, lengths::SOURCE, local_shape::SOURCE, tangents::SOURCE, wind::SOURCE];
-        let library: Vec<Module> = LIBRARY.iter().copied().chain(kernels.map(|source| source.root)).collect();
-        let text = format!("import package::constants::SWEEPS;\n{FUSED}");
-        let source = ShaderSource { label: "test.fused", root: ("fused", text.leak()), library: Vec::leak(library) };
-        for (roots, follows) in [(false, false), (false, true), (true, true)] {
-            let specialization = Specialization::new()
-                .constant("SWEEPS", 1)
-                .constant("CHUNK", 1)
-                .feature("global_shape", true)
-                .feature("pinned_tips", false)
-                .feature("roots", roots)
-                .feature("follows", follows);
-            Shader::new(&source, &specialization).unwrap();
-        }
     }
 }

@@ -1,16 +1,14 @@
 //! The simulation of hair: kernels (compute shaders), their order, and the same computations in f64 on the CPU as a
 //! reference.
 //!
-//! The method is that of TressFX 4.1 with its errors corrected: Verlet integration, global and local shape constraints,
-//! velocity shock propagation, length constraints, wind, and collision with capsules. Sub-steps have a fixed length, and
-//! edges have their exact length at the end of each. [`HairSim`] makes its buffers and pipelines once and then only writes
-//! passes into a [`PassList`](tressfx_core::pass::PassList). It never names a backend, submits or waits.
+//! [`Solver::TressFx`] is the published method of TressFX with what is wrong there mended: Verlet integration with velocity shock
+//! propagation, global and local shape constraints, wind, length constraints, and collision with capsules
+//! ([`reference::tressfx`] says how). [`Solver::Direct`] moves strands as rods instead, all edges of a strand at once
+//! ([`reference::direct`] says how). Sub-steps have a fixed length. [`HairSim`] makes its buffers and pipelines once and then only
+//! writes passes into a [`PassList`](tressfx_core::pass::PassList). It never names a backend, submits or waits.
 //!
-//! [`Solver::Direct`] moves strands as rods instead, all edges of a strand at once ([`reference::direct`] says how).
-//!
-//! A kernel has one name everywhere. `integrate`, for example, is the file `shaders/integrate.wgsl`, the Rust function in
-//! `kernel/integrate.rs` that makes its pass, the f64 function `integrate` in [`mod@reference`] and the label
-//! `hair.sim.integrate`.
+//! A kernel has one name everywhere. `tressfx`, for example, is the file `shaders/tressfx.wgsl`, the Rust function in
+//! `kernel/tressfx.rs` that makes its pass, the f64 function `tressfx` in [`mod@reference`] and the label `hair.sim.tressfx`.
 
 #![forbid(unsafe_code)]
 

@@ -10,10 +10,9 @@ use serde::{Deserialize, Serialize};
 /// Stiffnesses and damping are given for a step of 1/60 s, where TressFX puts them, and converted to the sub-step that is
 /// simulated ([`crate::step`]), so that neither the frame rate nor the sub-step changes what they mean.
 ///
-/// The defaults hold a style under true gravity: a mohawk droops and does not fall, curls lengthen by a fifth and stay curls,
-/// hair that hangs in its file hangs. TressFX's own samples get there with a hundredth of the gravity. It takes both shapes:
-/// the local one keeps curls but, with a few iterations, cannot carry a strand of 32 vertices; the global one carries it but
-/// would drag curls along without their shape. It is strong at the root and lets the tip go, so that the hair stays alive.
+/// The defaults hold a style under true gravity as far as the published method can. TressFX's own samples get there with a hundredth of
+/// the gravity. It takes both shapes: the local one keeps curls but, with a few iterations, cannot carry a strand of 32 vertices; the
+/// global one carries it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SimParams {
@@ -23,24 +22,21 @@ pub struct SimParams {
     /// that of TressFX 4.1. [`SimParams::shock`] decides what the velocity is measured against: with a shock of 1 the head, with
     /// 0 the still air, through which a moving head then drags its hair; between them a share of both.
     pub damping: f32,
-    /// How stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
+    /// Of `TressFx`: how stiffly a strand keeps its bends and curls, from 0, which hangs like a chain, to 1, as stiff as the iterations
     /// allow. It is the share of the distance to its place that an edge moves in 1/60 s; what one sees is the stiffness of a
-    /// spring, `s / (1 - s)`: 0.9 is soft, 0.99 is ten times as stiff, 0.999 a hundred times. The default is so stiff that
-    /// curls come to rest; between 0.9 and 0.999 they may go on trembling by some cm/s ([`ClockParams::sub_step`]).
-    ///
-    /// [`ClockParams::sub_step`]: crate::ClockParams::sub_step
+    /// spring, `s / (1 - s)`. As in TressFX, what is above 0.95 counts as 0.95 (short strands would flicker between two states), and
+    /// a vertex moves by half of the share, even if its parent is pinned. It is no material: more vertices make strands softer,
+    /// and curls may tremble.
     pub local_stiffness: f32,
-    /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness, so that more of them
-    /// bring it further along the strand and do not change what it is.
+    /// Iterations of the local shape constraints in each sub-step, 1 to 16. They share the stiffness.
     pub local_iterations: u32,
     /// How strongly a strand is pulled to where the head carries its rest pose, from 0 to 1: the share of the distance
-    /// that is moved in 1/60 s at the root.
+    /// that is moved in 1/60 s.
     pub global_stiffness: f32,
-    /// The share of the strand, from the root, that the global shape reaches, from 0 to 1. At a share `x` of the range the
-    /// pull is `1 - x^2` of that at the root. It does not end at a vertex, as in TressFX, where the strand kinks.
+    /// The share of the strand's vertices, from the root, that the global shape pulls, from 0 to 1.
     pub global_range: f32,
-    /// Sweeps of the distance constraints in each sub-step, 0 to 16, before each vertex is placed at its exact distance from
-    /// its parent. Lengths are exact without any; sweeps let the tip pull the root's side, as a real strand does.
+    /// Iterations of the length constraints in each sub-step, 0 to 16: each moves the ends of all even edges and then those of all
+    /// odd ones to their lengths. With a few of them edges stretch.
     pub length_iterations: u32,
     /// Velocity shock propagation: the share of the head's motion that the strands make at once, from 0 to 1. On a head that
     /// moves evenly, hair hangs as at rest with 1, and trails with less. A smaller share leaves strands more of their own
@@ -91,7 +87,7 @@ impl Default for SimParams {
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             damping: 0.08,
-            local_stiffness: 0.9999,
+            local_stiffness: 0.9,
             local_iterations: 2,
             global_stiffness: 0.2,
             global_range: 1.0,
@@ -173,9 +169,9 @@ impl SimParams {
         self.global_stiffness > 0.0 && self.global_range > 0.0
     }
 
-    /// Whether strands of so many vertices keep their bends at all: two vertices have none.
-    pub fn has_local_shape(&self, vertices: u32) -> bool {
-        self.local_stiffness > 0.0 && vertices > 2
+    /// Iterations of the local shape constraints of strands of so many vertices; two vertices have no bends.
+    pub(crate) fn local_iterations_of(&self, vertices: u32) -> u32 {
+        if self.local_stiffness > 0.0 && vertices > 2 { self.local_iterations } else { 0 }
     }
 }
 

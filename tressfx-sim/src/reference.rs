@@ -3,15 +3,11 @@
 //! Every function does what the kernel of the same name does, with the same [`Step`]; [`follow_strand`] is the part of the
 //! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
-mod collide;
 pub mod direct;
-mod integrate;
-mod lengths;
-mod local_shape;
-mod recovery;
 mod roots;
 mod simulation;
 mod tangents;
+mod tressfx;
 mod vector;
 mod wind;
 
@@ -20,15 +16,10 @@ use glam::{DVec3, Vec4};
 use crate::step::Step;
 use roots::RootMotion;
 
-pub use collide::collide;
-pub use integrate::integrate;
-pub use lengths::lengths;
-pub use local_shape::local_shape;
-pub use recovery::recovery;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
 pub use tangents::{follow_strand, tangents};
-pub use wind::wind;
+pub use tressfx::tressfx;
 
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]

@@ -7,19 +7,14 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
 use crate::buffers::{CapsuleBuffers, SectionBuffers};
-use crate::kernel::collide::collide;
 use crate::kernel::direct::direct;
-use crate::kernel::integrate::integrate;
-use crate::kernel::lengths::lengths;
-use crate::kernel::local_shape::local_shape;
-use crate::kernel::recovery::recovery;
 use crate::kernel::roots::roots;
 use crate::kernel::tangents::tangents;
-use crate::kernel::wind::wind;
+use crate::kernel::tressfx::tressfx;
 use crate::kernel::{Kernels, Pass, PassMaker};
 use crate::params::SimParams;
 use crate::sim::SectionDesc;
-use crate::solver::{Conditions, Solver};
+use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::SectionInfo;
 
@@ -45,12 +40,7 @@ pub(crate) struct SimSection {
 #[derive(Debug)]
 struct Passes {
     roots: Option<Pass>,
-    integrate: Pass,
-    local_shape: Pass,
-    wind: Pass,
-    lengths: Pass,
-    recovery: Pass,
-    collide: Option<Pass>,
+    tressfx: Option<Pass>,
     direct: Option<Pass>,
     tangents: Pass,
 }
@@ -85,28 +75,20 @@ impl SimSection {
         params: SimParams,
         shared: &Shared,
     ) -> Result<()> {
-        if specialization(&params) != specialization(&self.params) {
+        let vertices = self.info.shape.vertices;
+        if specialization(&params, vertices) != specialization(&self.params, vertices) {
             self.passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &self.buffers, shared }, &params)?;
         }
         self.params = params;
         Ok(())
     }
 
-    pub(crate) fn needs(&self, stage: Stage, conditions: Conditions) -> bool {
-        self.solver.needs(stage, &self.params, self.info.shape.vertices, conditions)
-    }
-
-    /// Records a stage with one of [`SectionBuffers::steps`].
+    /// Records a stage with one of [`SectionBuffers::steps`]; nothing where the section has no such pass.
     pub(crate) fn record(&self, list: &mut PassList, stage: Stage, step: usize) {
         let passes = &self.passes;
         let pass = match stage {
             Stage::Roots => passes.roots.as_ref(),
-            Stage::Integrate => Some(&passes.integrate),
-            Stage::LocalShape => Some(&passes.local_shape),
-            Stage::Wind => Some(&passes.wind),
-            Stage::Lengths => Some(&passes.lengths),
-            Stage::Recovery => Some(&passes.recovery),
-            Stage::Collide => passes.collide.as_ref(),
+            Stage::TressFx => passes.tressfx.as_ref(),
             Stage::Direct => passes.direct.as_ref(),
             Stage::Tangents => Some(&passes.tangents),
         };
@@ -115,21 +97,16 @@ impl SimSection {
 }
 
 /// What of the parameters the passes are specialised on. The others are uniforms.
-fn specialization(params: &SimParams) -> (bool, u32, bool, bool) {
-    let (damped, pulled) = (params.internal_damping > 0.0, params.pull_frequency > 0.0);
-    (params.has_global_shape(), params.length_iterations, damped, pulled)
+fn specialization(params: &SimParams, vertices: u32) -> (bool, [u32; 2], bool, bool) {
+    let iterations = [params.local_iterations_of(vertices), params.length_iterations];
+    (params.has_global_shape(), iterations, params.internal_damping > 0.0, params.pull_frequency > 0.0)
 }
 
 impl Passes {
     fn new(maker: &mut PassMaker, params: &SimParams) -> Result<Self> {
         Ok(Self {
             roots: roots(maker)?,
-            integrate: integrate(maker, params)?,
-            local_shape: local_shape(maker)?,
-            wind: wind(maker)?,
-            lengths: lengths(maker, params)?,
-            recovery: recovery(maker)?,
-            collide: collide(maker)?,
+            tressfx: tressfx(maker, params)?,
             direct: direct(maker, params)?,
             tangents: tangents(maker)?,
         })

@@ -18,7 +18,7 @@ use crate::kernel::Kernels;
 use crate::params::SimParams;
 use crate::rods::{GpuRods, Standing};
 use crate::section::{Shared, SimSection};
-use crate::solver::{Conditions, Solver};
+use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::Step;
 
@@ -259,7 +259,7 @@ impl HairSim {
     }
 
     /// Changes the parameters of a section, from the next frame on. Kernels are compiled only where the
-    /// global shape comes or goes, or the length constraints change their iterations, and once for each.
+    /// global shape comes or goes, or constraints change their iterations, and once for each.
     ///
     /// # Errors
     /// A parameter outside its range, or what the backend says; nothing changes then.
@@ -348,7 +348,7 @@ impl HairSim {
             section.buffers.steps.upload(list, ALONE, &[step]);
         }
         for section in &self.sections {
-            section.solver().reset().iter().for_each(|&stage| section.record(list, stage, ALONE));
+            section.solver().stages().iter().for_each(|&stage| section.record(list, stage, ALONE));
         }
     }
 
@@ -370,21 +370,17 @@ impl HairSim {
             let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
             section.buffers.steps.upload(list, FIRST, &steps);
         }
-        for (index, ranges) in ranges.iter().enumerate() {
-            self.record_sub_step(list, FIRST + index, input.wind.is_some(), ranges);
-        }
+        (0..sub_steps.len()).for_each(|index| self.record_sub_step(list, FIRST + index));
         self.capsules = capsules;
     }
 
-    /// `place` is where the steps are, `capsules` are the ranges of capsules of each section.
-    fn record_sub_step(&self, list: &mut PassList, place: usize, wind: bool, capsules: &[[u32; 2]]) {
+    /// `place` is where the steps are.
+    fn record_sub_step(&self, list: &mut PassList, place: usize) {
         let stages = |section: &SimSection| section.solver().stages();
         let most = self.sections.iter().map(|section| stages(section).len()).max().unwrap_or(0);
         for index in 0..most {
-            for (section, &[first, end]) in self.sections.iter().zip(capsules) {
-                let conditions = Conditions { wind, capsules: first < end };
-                let stage = stages(section).get(index).filter(|&&stage| section.needs(stage, conditions));
-                stage.iter().for_each(|&&stage| section.record(list, stage, place));
+            for section in &self.sections {
+                stages(section).get(index).iter().for_each(|&&stage| section.record(list, stage, place));
             }
         }
     }

@@ -10,7 +10,7 @@
 //!   make the same share of the motion at once. It is made before the integration, so that damping acts on what is left: with
 //!   a shock of 1 on the velocity relative to the head, with 0 on that relative to the air.
 
-use glam::{Quat, Vec3, Vec4};
+use glam::{Quat, Vec2, Vec3, Vec4};
 use tressfx_core::gpu_struct;
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::strands::Strands;
@@ -22,6 +22,8 @@ use crate::wind::Wind;
 
 /// The length of the step for which TressFX states stiffness and damping, s.
 pub const REFERENCE_STEP: f64 = 1.0 / 60.0;
+/// A stiffer local shape counts as this, as in TressFX: short strands would flicker between two states.
+const STIFFEST_LOCAL: f32 = 0.95;
 
 gpu_struct! {
     /// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one
@@ -44,11 +46,12 @@ gpu_struct! {
         /// Displacement by the wind from the four corners of its cone, across an edge; for [`Solver::Direct`] its velocity,
         /// units/s.
         pub wind: [Vec4; 4],
-        /// Share of the distance to the global shape that a vertex is moved, at the root.
+        /// Share of the distance to the global shape that a vertex is moved.
         pub global_stiffness: f32,
-        /// Share of the strand, from the root, that the global shape reaches.
+        /// Share of the strand's vertices, from the root, that the global shape reaches.
         pub global_range: f32,
-        /// Share of the distance to the local shape that one iteration moves, by both vertices of an edge together.
+        /// Share of the distance to the local shape that one iteration moves, by both vertices of an edge together; each makes half of
+        /// it, if it is not pinned.
         pub local_stiffness: f32,
         /// Coefficient of sliding friction.
         pub friction: f32,
@@ -56,8 +59,6 @@ gpu_struct! {
         pub tip_separation: f32,
         /// Share of the head's motion that the strands make at once.
         pub shock: f32,
-        /// Share by which the displacement of a vertex is moved towards the mean of its neighbours' displacements.
-        pub smoothing: f32,
         /// Not 0: the strands go to their rest pose, at rest.
         pub reset: u32,
         /// Guides of the section.
@@ -66,8 +67,6 @@ gpu_struct! {
         pub strands: u32,
         /// Vertices of each strand.
         pub vertices: u32,
-        /// Iterations of the local shape constraints.
-        pub local_iterations: u32,
         /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
         pub root_share: f32,
         /// The first capsule that the section collides with.
@@ -92,6 +91,8 @@ gpu_struct! {
         pub pull: f32,
         /// The most rounds of Newton's method.
         pub rounds: u32,
+        /// Nothing.
+        pub padding: Vec2,
     }
 }
 
@@ -133,11 +134,6 @@ pub(crate) fn bending(params: &SimParams, metres_per_unit: f32) -> f64 {
     G * f64::from(params.bending_length).powi(3) / f64::from(metres_per_unit).powi(4)
 }
 
-/// How strongly the displacements of neighbouring vertices are smoothed in strands of `vertices` vertices.
-fn smoothing(vertices: u32) -> f32 {
-    ((vertices * vertices) as f32 / 1000.0).min(0.25)
-}
-
 impl Step {
     /// Resets the strands to the rest pose, on a head with this rotation.
     pub fn reset(params: &SimParams, info: &SectionInfo, rotation: Quat) -> Self {
@@ -162,7 +158,7 @@ impl Step {
             Solver::Direct => (corner.as_dvec3() / metres).as_vec3().extend(0.0),
         };
         let iterations = f64::from(params.local_iterations);
-        let local = spring_share(params.local_stiffness, sub.length);
+        let local = spring_share(params.local_stiffness.min(STIFFEST_LOCAL), sub.length);
         let shocked = sub.head_acceleration * info.metres_per_unit > params.shock_acceleration;
         Self {
             head_rotation: sub.head_rotation.into(),
@@ -183,12 +179,10 @@ impl Step {
             friction: params.friction,
             tip_separation: params.tip_separation.unwrap_or(info.tip_separation),
             shock: if shocked { 1.0 } else { params.shock },
-            smoothing: smoothing(info.shape.vertices),
             reset: 0,
             guides: info.shape.guides,
             strands: info.shape.strands(),
             vertices: info.shape.vertices,
-            local_iterations: params.local_iterations,
             root_share: sub.share_of_remaining_frame as f32,
             first_capsule: 0,
             end_capsule: 0,
@@ -201,6 +195,7 @@ impl Step {
             drag_along: params.air_drag * params.air_drag_along,
             pull: (std::f32::consts::TAU * params.pull_frequency).powi(2),
             rounds: params.rounds,
+            padding: Vec2::ZERO,
         }
     }
 }

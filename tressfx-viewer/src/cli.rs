@@ -183,7 +183,7 @@ pub(crate) struct Shaders {
     /// The languages to write, between commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "wgsl", value_name = "LANGUAGE")]
     pub(crate) emit: Vec<LanguageName>,
-    /// Write only the kernel of this name, such as hair.sim.integrate
+    /// Write only the kernel of this name, such as hair.sim.tressfx
     #[arg(long, value_name = "LABEL")]
     pub(crate) kernel: Option<String>,
     /// The folder to write into

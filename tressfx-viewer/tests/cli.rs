@@ -168,7 +168,7 @@ fn the_same_command_gives_the_same_picture_and_the_same_pose() {
 fn figures_have_their_keys_and_sensible_values() {
     let folder = folder("stats");
     let table = render(&folder, &["--out", "frames/", "--stats", "s.json", "--print-passes"]);
-    for label in ["hair.sim.integrate", "hair.render.fill", "hair.render.composite"] {
+    for label in ["hair.sim.tressfx", "hair.render.fill", "hair.render.composite"] {
         assert!(table.contains(label), "{table}");
     }
     assert_eq!(std::fs::read_dir(folder.join("frames")).unwrap().count(), 8);

@@ -13,7 +13,7 @@ use crate::compilers::{Compiler, installed};
 
 const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
 
-/// Without the shapes and without sweeps.
+/// Without the shapes and without iterations.
 const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
 
 /// Rods with all that they may have.
@@ -109,7 +109,9 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "shaded",
         "unshaded",
     ];
-    assert_eq!(features, names.into_iter().flat_map(both).collect());
+    // It is always written for capsules.
+    let all = names.into_iter().flat_map(both).chain([String::from("capsules true")]);
+    assert_eq!(features, all.collect());
 }
 
 /// Every binding stands in the text, with its name in the declaration that says where it is.
@@ -215,22 +217,26 @@ fn compilers_refuse_a_broken_kernel() {
 #[test]
 fn one_kernel_is_chosen_by_its_name() {
     let folder = folder("chosen");
-    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.lengths"]);
+    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.tressfx"]);
     let files: Vec<_> = entries.iter().map(|entry| file_of(entry, "hlsl")).collect();
-    assert_eq!(files, ["hair.sim.lengths.comp.hlsl"]);
-    assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 6 + 1);
-    let lengths = &entries[0];
-    assert_eq!((&lengths["constants"]["SWEEPS"], &lengths["constants"]["CHUNK"]), (&2.into(), &5.into()));
-    assert_eq!(lengths["workgroup_size"], serde_json::json!([64, 1, 1]));
-    assert_eq!(lengths["bindings"][0]["places"]["hlsl"], "register(b0)");
-    let step = lengths["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
+    let expected = ["", ".roots"].map(|roots| format!("hair.sim.tressfx.capsules.global_shape{roots}.comp.hlsl"));
+    assert_eq!(files, expected);
+    assert_eq!(fs::read_dir(folder.join("out")).unwrap().count(), 2 * 6 + 1);
+    let kernel = &entries[0];
+    assert_eq!((&kernel["constants"]["LOCAL"], &kernel["constants"]["LENGTHS"]), (&2.into(), &2.into()));
+    assert_eq!(kernel["workgroup_size"], serde_json::json!([64, 1, 1]));
+    assert_eq!(kernel["bindings"][0]["places"]["hlsl"], "register(b0)");
+    let step = kernel["structs"].as_array().unwrap().iter().find(|layout| layout["name"] == "Step").unwrap();
     assert_eq!(
         step["fields"][2],
         serde_json::json!({ "name": "center_displacement", "type": "vec3<f32>", "offset": 32 })
     );
-    let output = tressfx(&folder, &["--kernel", "hair.sim.lenghts", "--out", "none"]);
+    let output = tressfx(&folder, &["--kernel", "hair.sim.tresfx", "--out", "none"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));
-    assert!(message.contains("`hair.sim.lenghts`") && message.contains("hair.sim.lengths, "), "{message}");
+    assert!(
+        message.contains("`hair.sim.tresfx`") && message.contains("hair.sim.tangents, hair.sim.tressfx"),
+        "{message}"
+    );
     assert!(!folder.join("none").exists());
 }

@@ -225,12 +225,8 @@ macro_rules! each_case {
                 backends_run_on_two_threads_at_once: [ReadBack];
             }
             hair {
-                integrate_is_as_in_f64: [Compute ReadBack];
-                local_shape_is_as_in_f64: [Compute ReadBack];
-                wind_is_as_in_f64: [Compute ReadBack];
-                lengths_is_as_in_f64: [Compute ReadBack];
-                recovery_is_as_in_f64: [Compute ReadBack];
-                collide_is_as_in_f64: [Compute ReadBack];
+                tressfx_is_as_in_f64: [Compute ReadBack];
+                a_strand_that_is_no_numbers_goes_to_rest: [Compute ReadBack];
                 tangents_is_as_in_f64: [Compute ReadBack];
                 a_second_is_as_in_f64: [Compute ReadBack];
                 a_picture_is_as_in_f64_in_standard_order: [Compute Raster ReadBack];

@@ -1,13 +1,13 @@
 //! Hair: each kernel of the simulation, a second of a groom, and its picture, against their f64 references.
 
-use glam::{DVec3, EulerRot, Quat, Vec3};
+use glam::{DVec3, EulerRot, Quat, Vec3, Vec4};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_render::Material;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{SectionInfo, Step};
-use tressfx_sim::{CapsuleMotion, SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
+use tressfx_sim::{SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
 
 use super::subject::Subject;
 use crate::render::{Groom, Screen};
@@ -57,81 +57,62 @@ fn state(rig: &mut Rig) -> [Vec<DVec3>; 2] {
     [wide(&rig.positions(0)[..guides]), wide(&rig.previous(0))]
 }
 
-/// Runs one kernel on the GPU's own state, and `reference` on the same.
-fn kernel(t: &Subject, kernel: Kernel, reference: impl Fn(&Step, &mut Guide, u32, &[(Capsule, CapsuleMotion)])) {
-    let (mut rig, step) = moved(t);
-    let capsules = rig.centered();
-    let before = state(&mut rig);
-    rig.stage(&step, kernel);
-    let (found, rest) = ((rig.positions(0), rig.previous(0)), rig.rest(0));
-    let strands = &rig.strands[0];
-    let [mut positions, mut previous] = before.clone();
-    for guide in 0..strands.guides {
-        let start = (guide * strands.vertices) as usize;
-        let range = start..start + strands.vertices as usize;
-        let mut of_guide = Guide {
-            rest: &rest[range.clone()],
-            rest_lengths: &strands.rest_lengths[range.clone()],
-            positions: &mut positions[range.clone()],
-            previous: &mut previous[range],
-            own_root: None,
-        };
-        reference(&step, &mut of_guide, guide, &capsules);
-    }
-    assert!([&positions, &previous] != [&before[0], &before[1]], "it does something");
-    for (found, expected) in [(&found.0[..positions.len()], &positions), (&found.1[..], &previous)] {
-        let error = worst(strands, found, expected);
-        assert!(error <= TOLERANCE, "{}: {error:e} of strand length", kernel.label());
-    }
-}
-
-pub(super) fn integrate_is_as_in_f64(t: &mut Subject) {
-    kernel(t, Kernel::Integrate, |step, guide, _, _| reference::integrate(step, guide));
-}
-
-pub(super) fn local_shape_is_as_in_f64(t: &mut Subject) {
-    let iterations = params().local_iterations;
-    kernel(t, Kernel::LocalShape, |step, guide, _, _| reference::local_shape(step, guide, iterations));
-}
-
-pub(super) fn wind_is_as_in_f64(t: &mut Subject) {
-    kernel(t, Kernel::Wind, |step, guide, strand, _| reference::wind(step, guide, strand));
-}
-
-pub(super) fn lengths_is_as_in_f64(t: &mut Subject) {
-    let sweeps = params().length_iterations;
-    kernel(t, Kernel::Lengths, |step, guide, _, _| reference::lengths(step, guide, sweeps));
-}
-
-pub(super) fn recovery_is_as_in_f64(t: &mut Subject) {
-    let (mut rig, step) = moved(t);
-    let before = state(&mut rig);
-    let (strands, buffers) = (rig.strands[0].clone(), rig.sim.buffers()[0]);
-    let bad = 5 * buffers.shape.strands() + 3;
-    rig.run(|_, list| list.upload(buffers.positions, 16 * u64::from(bad), &[f32::NAN]));
-    rig.stage(&step, Kernel::Recovery);
-    let (found, rest) = ([rig.positions(0), rig.previous(0)], rig.rest(0));
-    let [mut positions, mut previous] = before;
+/// A slice of each array of a section for one of its guides.
+fn guide_of<'a>(strands: &'a Strands, rest: &'a [Vec4], state: &'a mut [Vec<DVec3>; 2], guide: usize) -> Guide<'a> {
     let vertices = strands.vertices as usize;
-    let range = 3 * vertices..4 * vertices;
-    positions[range.start + 5].x = f64::NAN;
-    let mut of_guide = Guide {
+    let range = guide * vertices..(guide + 1) * vertices;
+    let [positions, previous] = state;
+    Guide {
         rest: &rest[range.clone()],
         rest_lengths: &strands.rest_lengths[range.clone()],
         positions: &mut positions[range.clone()],
         previous: &mut previous[range],
         own_root: None,
-    };
-    assert!(reference::recovery(&step, &mut of_guide));
-    for (found, expected) in found.iter().zip([&positions, &previous]) {
-        let error = worst(&strands, &found[..expected.len()], expected);
-        assert!(error <= TOLERANCE, "{error:e} of strand length");
     }
-    assert_eq!(rig.non_finite(), 1);
 }
 
-pub(super) fn collide_is_as_in_f64(t: &mut Subject) {
-    kernel(t, Kernel::Collide, |step, guide, _, capsules| reference::collide(step, guide, capsules));
+/// The error of the guides' positions and past ones, as a share of strand length.
+fn error(rig: &mut Rig, expected: &[Vec<DVec3>; 2]) -> f64 {
+    let found = [rig.positions(0), rig.previous(0)];
+    let errors = found.iter().zip(expected).map(|(found, expected)| {
+        let guides = &found[..expected.len()];
+        worst(&rig.strands[0], guides, expected)
+    });
+    errors.fold(0.0, f64::max)
+}
+
+pub(super) fn tressfx_is_as_in_f64(t: &mut Subject) {
+    let (mut rig, step) = moved(t);
+    let (capsules, rest, strands) = (rig.centered(), rig.rest(0), rig.strands[0].clone());
+    let before = state(&mut rig);
+    rig.stage(&step, Kernel::TressFx);
+    let mut expected = before.clone();
+    for guide in 0..strands.guides {
+        let mut of_guide = guide_of(&strands, &rest, &mut expected, guide as usize);
+        assert!(!reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules), "it is finite");
+    }
+    assert!(expected != before, "it does something");
+    let error = error(&mut rig, &expected);
+    assert!(error <= TOLERANCE, "{error:e} of strand length");
+}
+
+pub(super) fn a_strand_that_is_no_numbers_goes_to_rest(t: &mut Subject) {
+    let (mut rig, step) = moved(t);
+    let (capsules, rest, strands) = (rig.centered(), rig.rest(0), rig.strands[0].clone());
+    let mut expected = state(&mut rig);
+    let buffers = rig.sim.buffers()[0];
+    let bad = 5 * buffers.shape.strands() + 3;
+    rig.run(|_, list| list.upload(buffers.positions, 16 * u64::from(bad), &[f32::NAN]));
+    rig.stage(&step, Kernel::TressFx);
+    expected[0][3 * strands.vertices as usize + 5].x = f64::NAN;
+    for guide in 0..strands.guides {
+        let mut of_guide = guide_of(&strands, &rest, &mut expected, guide as usize);
+        let spoiled = reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules);
+        assert_eq!(spoiled, guide == 3);
+    }
+    let error = error(&mut rig, &expected);
+    assert!(error <= TOLERANCE, "{error:e} of strand length");
+    assert_eq!(rig.non_finite(), 1);
 }
 
 pub(super) fn tangents_is_as_in_f64(t: &mut Subject) {

@@ -17,7 +17,7 @@ pub fn shared_modules() -> &'static [Module] {
 /// Where a shader comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaderSource {
-    /// The kernel's label, such as `hair.sim.integrate`.
+    /// The kernel's label, such as `hair.sim.tressfx`.
     pub label: Label,
     /// The module with the entry points.
     pub root: Module,

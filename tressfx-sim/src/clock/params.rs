@@ -8,9 +8,7 @@ use crate::params::{ParamError, within};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ClockParams {
-    /// Seconds: the length of a sub-step. At 1/120 the local shape constraints are stiff and hair still comes to rest. They
-    /// move the two vertices of an edge but not the edge before it, which can add energy; integration with a sub-step that
-    /// is not too short removes it again. With 1/240, curls of medium stiffness tremble.
+    /// Seconds: the length of a sub-step.
     pub sub_step: f64,
     /// Seconds: the most time that one frame simulates; the rest is dropped, and reported.
     pub max_frame: f64,

@@ -1,26 +1,15 @@
 //! `hair.sim.direct`: an implicit sub-step of rods; also the reset to the rest pose.
 
 use tressfx_core::Result;
-use tressfx_core::shader::{Module, ShaderSource, Specialization};
+use tressfx_core::shader::{ShaderSource, Specialization};
 
-use super::{LIBRARY, Pass, PassMaker, wind};
+use super::{LIBRARY, Pass, PassMaker};
 use crate::params::SimParams;
 
 pub(crate) const SOURCE: ShaderSource = ShaderSource {
     label: "hair.sim.direct",
     root: ("direct", include_str!("../../shaders/direct.wgsl")),
-    library: &WITH_WIND,
-};
-
-/// It asks for the wind of a strand.
-const WITH_WIND: [Module; LIBRARY.len() + 1] = {
-    let mut modules = [wind::SOURCE.root; LIBRARY.len() + 1];
-    let mut index = 0;
-    while index < LIBRARY.len() {
-        modules[index] = LIBRARY[index];
-        index += 1;
-    }
-    modules
+    library: LIBRARY,
 };
 
 /// `None` for a section with another solver.

@@ -6,9 +6,7 @@ use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
 use super::direct::{Rod, RodRest, direct_guide};
-use super::{
-    Guide, GuideRoot, RootPlace, collide, follow_strand, integrate, lengths, local_shape, recovery, roots, wind,
-};
+use super::{Guide, GuideRoot, RootPlace, follow_strand, roots, tressfx};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
 use crate::collider::CapsuleMotion;
@@ -84,7 +82,7 @@ impl<'a> Simulation<'a> {
                 section.step = Step::reset(&section.params, &section.info, rotation);
                 section.move_roots();
                 match section.info.solver {
-                    Solver::TressFx => section.each_guide(|step, _, _, guide| integrate(step, guide)),
+                    Solver::TressFx => _ = section.positions_step(&[]),
                     Solver::Direct => _ = section.rods_step(&[]),
                 }
             }
@@ -92,9 +90,10 @@ impl<'a> Simulation<'a> {
                 section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
                 let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
                 let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
+                section.move_roots();
                 self.non_finite += match section.info.solver {
-                    Solver::TressFx => section.sub_step(&capsules, input.wind.is_some()),
-                    Solver::Direct => section.rods_sub_step(&capsules),
+                    Solver::TressFx => section.positions_step(&capsules),
+                    Solver::Direct => section.rods_step(&capsules),
                 };
             }
         }
@@ -172,31 +171,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// One sub-step; says how many strands had become non-finite.
-    fn sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], in_wind: bool) -> u64 {
+    /// A sub-step of positions, or their reset; says how many strands had become non-finite.
+    fn positions_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
         let mut non_finite = 0;
-        self.move_roots();
         self.each_guide(|step, params, index, guide| {
-            integrate(step, guide);
-            if params.has_local_shape(guide.vertices() as u32) {
-                local_shape(step, guide, params.local_iterations);
-            }
-            if in_wind {
-                wind(step, guide, index);
-            }
-            lengths(step, guide, params.length_iterations);
-            non_finite += u64::from(recovery(step, guide));
-            collide(step, guide, capsules);
+            non_finite += u64::from(tressfx(step, params, guide, index, capsules));
         });
         non_finite
     }
 
-    /// One sub-step of rods; says how many had become non-finite.
-    fn rods_sub_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
-        self.move_roots();
-        self.rods_step(capsules)
-    }
-
+    /// A sub-step of rods, or their reset; says how many had become non-finite.
     fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
         let mut rods = std::mem::take(&mut self.rods);
         let mut non_finite = 0;

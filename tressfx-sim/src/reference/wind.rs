@@ -1,25 +1,9 @@
-//! `hair.sim.wind` in f64.
+//! The wind of a strand: `shaders/wind.wgsl`.
 
 use glam::DVec3;
 
-use super::Guide;
-use super::vector::{DOWN, direction_or, position};
+use super::vector::position;
 use crate::step::Step;
-
-/// Each vertex is moved by the part of the wind that is across its edge. All edges are as they were before the wind. `strand` is
-/// the index of the guide: its wind depends on it.
-pub fn wind(step: &Step, guide: &mut Guide, strand: u32) {
-    let wind = wind_of(step, strand);
-    let mut direction = DOWN;
-    for i in 0..guide.vertices() {
-        if let Some(next) = guide.positions.get(i + 1) {
-            direction = direction_or(*next - guide.positions[i], direction);
-        }
-        if !guide.is_pinned(i) {
-            guide.positions[i] += wind - wind.dot(direction) * direction;
-        }
-    }
-}
 
 /// The mix of the wind's four corners that is the strand's own.
 pub(super) fn wind_of(step: &Step, strand: u32) -> DVec3 {

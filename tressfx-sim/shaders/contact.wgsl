@@ -1,0 +1,59 @@
+// Contact with capsules: a vertex that is inside of one is pushed straight out of it, and slides on it with friction.
+
+import package::capsule::{GpuCapsule, GpuCapsuleMotion, clearance, nearest, origin_of, slid};
+import package::integrate::Free;
+import package::root::{Root, carried_from};
+import package::step::step;
+import package::vector::{direction_or, rotate, rotate_back};
+
+/// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
+@group(0) @binding(5) var<storage, read> capsules: array<GpuCapsule>;
+/// How each of them has moved during the sub-step.
+@group(0) @binding(6) var<storage, read> capsule_motions: array<GpuCapsuleMotion>;
+
+/// Larger than any groom.
+const FAR: f32 = 1e30;
+/// A computed clearance is multiplied by this, so that rounding cannot make it too large.
+const CERTAIN: f32 = 0.999;
+
+/// How far a point may go and touch no capsule; 0 or less if it is inside of one.
+fn clear_distance(point: vec3<f32>) -> f32 {
+    let in_head = rotate_back(step.head_rotation, point);
+    var clear = FAR;
+    for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        let capsule = capsules[i];
+        clear = min(clear, clearance(capsule, in_head, nearest(capsule, in_head)));
+    }
+    return CERTAIN * clear;
+}
+
+/// A point after the capsules, one after the other, and the past that gives it the displacement that they leave.
+fn pushed_out(root: Root, position: vec3<f32>, past: vec3<f32>) -> Free {
+    let before = rotate_back(step.head_rotation, position);
+    var point = before;
+    var displacement = rotate_back(step.head_rotation, position - past);
+    for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        let sphere = nearest(capsules[i], point);
+        let from_center = point - sphere.xyz;
+        if (dot(from_center, from_center) < sphere.w * sphere.w) {
+            let normal = direction_or(from_center, vec3(0.0, 1.0, 0.0));
+            let push = sphere.w * normal - from_center;
+            let surface = surface_displacement(root, point, i);
+            let depth = max(dot(push, normal), 0.0);
+            displacement = surface + slid(displacement + push - surface, normal, depth, step.friction);
+            point += push;
+        }
+    }
+    let after = position + rotate(step.head_rotation, point - before);
+    return Free(after, after - rotate(step.head_rotation, displacement));
+}
+
+/// The displacement of a capsule's surface at a point, on the axes of the head. Like that of a vertex it leaves out the share of the
+/// root's motion that the velocity shock has added to the vertex's past.
+fn surface_displacement(root: Root, point: vec3<f32>, capsule: u32) -> vec3<f32> {
+    let here = rotate(step.head_rotation, point);
+    let own = point - origin_of(capsule_motions[capsule], point);
+    let with_head = here - rotate_back(step.head_turn, here) + step.center_displacement;
+    let with_root = here - carried_from(root, here) + step.center_displacement;
+    return own + rotate_back(step.head_rotation, with_head - step.shock * with_root);
+}
