@@ -1,6 +1,7 @@
 //! The rods of a section at rest.
 
 use glam::{DVec3, Vec4};
+use rayon::prelude::*;
 use tressfx_core::strands::Strands;
 
 use crate::params::SimParams;
@@ -18,6 +19,18 @@ pub struct Standing {
     pub fallen: u32,
 }
 
+impl Standing {
+    fn count(&mut self, rest: &RodRest, stands: bool) {
+        let factor = rest.stiffening.cbrt() as f32;
+        self.raised += u32::from(stands && factor > 1.0);
+        self.fallen += u32::from(!stands);
+        self.largest_factor = self.largest_factor.max(factor);
+    }
+}
+
+/// Rods that are held in f64 at the same time; a million would take gigabytes.
+const AT_ONCE: usize = 4096;
+
 /// The rods of a section at rest, as the kernel takes them.
 #[derive(Debug)]
 pub(crate) struct GpuRods {
@@ -33,24 +46,24 @@ impl GpuRods {
         let (guides, vertices) = (strands.guides as usize, strands.vertices as usize);
         let mut entries = vec![Vec4::ZERO; 2 * guides * vertices];
         let mut standing = Standing { largest_factor: 1.0, ..Standing::default() };
-        for guide in 0..guides {
-            let (rest, stands) = rod_rest(strands, params, guide);
-            let factor = rest.stiffening.cbrt() as f32;
-            standing.raised += u32::from(stands && factor > 1.0);
-            standing.fallen += u32::from(!stands);
-            standing.largest_factor = standing.largest_factor.max(factor);
-            let mut set = |vertex: usize, entry: usize, value: Vec4| {
-                entries[(2 * vertex + entry) * guides + guide] = value;
-            };
-            for edge in 0..vertices - 1 {
-                let length = strands.rest_lengths[guide * vertices + edge];
-                set(edge, 0, Vec4::from(rest.joints[edge].as_quat()).truncate().extend(length));
-                set(edge, 1, rest.frames[edge].as_quat().into());
+        for first in (0..guides).step_by(AT_ONCE) {
+            let some = first..(first + AT_ONCE).min(guides);
+            let rods: Vec<_> = some.into_par_iter().map(|guide| rod_rest(strands, params, guide)).collect();
+            for (guide, (rest, stands)) in (first..).zip(rods) {
+                standing.count(&rest, stands);
+                let mut set = |vertex: usize, entry: usize, value: Vec4| {
+                    entries[(2 * vertex + entry) * guides + guide] = value;
+                };
+                for edge in 0..vertices - 1 {
+                    let length = strands.rest_lengths[guide * vertices + edge];
+                    set(edge, 0, Vec4::from(rest.joints[edge].as_quat()).truncate().extend(length));
+                    set(edge, 1, rest.frames[edge].as_quat().into());
+                }
+                let pinned = rest.held + 1 < vertices && strands.rest[(guide + 1) * vertices - 1].w == 0.0;
+                let shortest = rest.spans.iter().copied().fold(f64::INFINITY, f64::min);
+                let pinned = if pinned { 1.0 } else { 0.0 };
+                set(vertices - 1, 0, Vec4::new(rest.stiffening as f32, rest.held as f32, shortest as f32, pinned));
             }
-            let pinned = rest.held + 1 < vertices && strands.rest[(guide + 1) * vertices - 1].w == 0.0;
-            let shortest = rest.spans.iter().copied().fold(f64::INFINITY, f64::min);
-            let pinned = if pinned { 1.0 } else { 0.0 };
-            set(vertices - 1, 0, Vec4::new(rest.stiffening as f32, rest.held as f32, shortest as f32, pinned));
         }
         Self { entries, standing }
     }

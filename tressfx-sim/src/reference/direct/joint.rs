@@ -66,6 +66,43 @@ impl Joint {
         let stiffer = (slope(self.turn.w) / 2.0).powi(3);
         stiffer * (1.0 + stiffness.lag) * stiffness.bending * (DMat3::IDENTITY + twist)
     }
+
+    /// The derivative of the torque by a rotation of the child, without lag, on the axes of the world.
+    pub(super) fn torque_by_child(&self, stiffness: &Stiffness) -> DMat3 {
+        let middle = DMat3::from_quat(self.middle);
+        -(middle * self.moment_by_turn(stiffness) * middle.transpose())
+    }
+
+    /// The derivative of the torque, without lag, by a rotation that half of the rest rotation is followed by: from its own
+    /// axes to those of the world.
+    ///
+    /// Such a rotation turns the middle frame, and the turn from there by the opposite of the rotation on one side and on the
+    /// other.
+    pub(super) fn torque_by_half(&self, half: DQuat, stiffness: &Stiffness) -> DMat3 {
+        let torque = self.middle.conjugate() * self.torque(stiffness, DVec3::ZERO);
+        let moment_by_turn = self.moment_by_turn(stiffness);
+        let by = |axis: DVec3| {
+            let turned = axis + self.turn * half * axis;
+            self.middle * (axis.cross(torque) + moment_by_turn * turned)
+        };
+        DMat3::from_cols(by(DVec3::X), by(DVec3::Y), by(DVec3::Z))
+    }
+
+    /// The derivative of the opposite of the torque by a rotation of the turn, both on the axes of the middle frame.
+    fn moment_by_turn(&self, stiffness: &Stiffness) -> DMat3 {
+        let weights = stiffness.bending * DVec3::new(1.0, 1.0, stiffness.twist_ratio);
+        let (v, w) = (self.turn.xyz(), self.turn.w);
+        let (s, u) = (slope(w), weights * v);
+        // The torque is `s^2 / 2 (w u + v x u) + s^3 w / 4 (v . u) v`.
+        let by = |axis: DVec3| {
+            let (dv, dw) = ((w * axis + axis.cross(v)) / 2.0, -axis.dot(v) / 2.0);
+            let (du, ds) = (weights * dv, -s * s * w / 2.0 * dw);
+            let first = s * ds * (w * u + v.cross(u)) + s * s / 2.0 * (dw * u + w * du + dv.cross(u) + v.cross(du));
+            let grown = s * s / 4.0 * (3.0 * ds * w + s * dw) * v.dot(u);
+            first + grown * v + s * s * s * w / 4.0 * ((dv.dot(u) + v.dot(du)) * v + v.dot(u) * dv)
+        };
+        DMat3::from_cols(by(DVec3::X), by(DVec3::Y), by(DVec3::Z))
+    }
 }
 
 #[cfg(test)]
@@ -110,6 +147,27 @@ mod tests {
             };
             let slope = (torque(1e-5) - torque(-1e-5)) / 2e-5;
             assert!((slope + matrix * axis).length() < 1e-8, "{slope} {}", matrix * axis);
+        }
+    }
+
+    #[test]
+    fn derivatives_of_the_torque_are_what_it_changes_by() {
+        let turn = |x: f64, y: f64, z: f64| DQuat::from_euler(EulerRot::XYZ, x, y, z);
+        let (parent, half) = (turn(0.3, -1.0, 2.0), turn(0.1, 0.4, -0.2));
+        let stiffness = Stiffness { bending: 2.0, twist_ratio: 0.77, lag: 0.0 };
+        for bend in [turn(0.01, 0.02, 0.03), turn(0.8, -0.5, 0.7), turn(2.0, 1.0, -1.0)] {
+            let child = parent * half * bend * half;
+            let torque = |half: DQuat, child: DQuat| Joint::new(parent, half, child).torque(&stiffness, DVec3::ZERO);
+            let joint = Joint::new(parent, half, child);
+            let (by_child, by_half) = (joint.torque_by_child(&stiffness), joint.torque_by_half(half, &stiffness));
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let by = |size: f64| DQuat::from_scaled_axis(size * axis);
+                let slope = |of: &dyn Fn(DQuat) -> DVec3| (of(by(1e-5)) - of(by(-1e-5))) / 2e-5;
+                let child_turned = slope(&|by| torque(half, by * child));
+                let half_turned = slope(&|by| torque(half * by, child));
+                assert!((child_turned - by_child * axis).length() < 1e-8, "{child_turned} {}", by_child * axis);
+                assert!((half_turned - by_half * axis).length() < 1e-8, "{half_turned} {}", by_half * axis);
+            }
         }
     }
 }

@@ -4,19 +4,23 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::joint::{Joint, Stiffness};
 use super::rest::half;
-use super::{RodRest, RodStep};
+use super::{RodRest, RodStep, outer};
 
-/// A strand is made stiffer by this factor until its pose is stable.
+/// A strand is made stiffer by powers of this factor until its pose is stable.
 const STIFFER: f64 = 1.2;
 /// A pose is stable enough if it is so with a strand that is less stiff by this factor. What is only just stable sways at the
 /// least touch, and rounding is one.
 const MARGIN: f64 = 1.5;
-/// After so many factors nothing helps.
-const MOST_FACTORS: u32 = 200;
-/// What a joint wants is corrected so often.
-const MOST_CORRECTIONS: u32 = 500;
-/// The longest correction of what a joint wants, rad.
-const LONGEST_CORRECTION: f64 = 0.3;
+/// After this power nothing helps.
+const LARGEST_POWER: i32 = 200;
+/// What a joint wants is corrected at most so often.
+const MOST_CORRECTIONS: u32 = 100;
+/// No strain makes a torque that is larger than this times the bending stiffness; it is largest at an angle of 136 degrees.
+const LARGEST_TORQUE: f64 = 5.4;
+/// The longest correction of half of what a joint wants, rad,
+const LONGEST_CORRECTION: f64 = 0.5;
+/// and one that is so short that it brings nothing any more.
+const SHORTEST_CORRECTION: f64 = 1e-9;
 
 impl RodRest {
     /// Bends what the joints want so that their torques hold the pose of the file under `share` of gravity: with 1 the strand
@@ -31,18 +35,15 @@ impl RodRest {
             return true;
         }
         let wanted = self.clone();
-        let mut try_with = |stiffening: f64| {
+        let mut stands = |stiffening: f64| {
             *self = Self { stiffening, ..wanted.clone() };
             self.balance(step, share)
         };
-        let mut stiffening = wanted.stiffening / MARGIN;
-        for _ in 0..MOST_FACTORS {
-            if try_with(stiffening) {
-                return try_with((stiffening * MARGIN).max(wanted.stiffening));
-            }
-            stiffening *= STIFFER;
-        }
-        false
+        let stiffer = |power: i32| wanted.stiffening / MARGIN * STIFFER.powi(power);
+        let Some(power) = least_power(|power| stands(stiffer(power))) else {
+            return false;
+        };
+        stands((stiffer(power) * MARGIN).max(wanted.stiffening))
     }
 
     /// Finds what the joints have to want; `false` where it is not found or the pose is not stable.
@@ -58,29 +59,37 @@ impl RodRest {
         self.is_stable(step, share)
     }
 
-    /// Sets what a joint wants so that it gives this torque in the pose of the file.
+    /// Sets what a joint wants so that it gives this torque in the pose of the file, by Newton's method. A correction that makes
+    /// nothing better is halved: there is no such joint beyond the strain at which torques are largest.
     fn want(&mut self, step: &RodStep, edge: usize, torque: DVec3) -> bool {
         let stiffness = self.stiffness(step, edge);
+        if torque.length() > LARGEST_TORQUE * stiffness.bending * step.twist_ratio.max(1.0) {
+            return false;
+        }
         let (parent, child) = (self.parent(edge), self.frames[edge]);
-        let turn = parent.conjugate() * child;
-        // What the joint wants is the turn of the pose after a correction.
-        let joint = |correction: DVec3| half(turn * DQuat::from_scaled_axis(correction));
-        let miss =
-            |correction: DVec3| Joint::new(parent, joint(correction), child).torque(&stiffness, DVec3::ZERO) - torque;
-        let scale = stiffness.bending * step.twist_ratio.min(1.0);
-        let mut correction = DVec3::ZERO;
+        let allowed = 1e-12 * (stiffness.bending * step.twist_ratio.min(1.0)).max(torque.length());
+        let mut best = half(parent.conjugate() * child);
+        let (mut trial, mut correction, mut least) = (best, DVec3::ZERO, f64::INFINITY);
         for _ in 0..MOST_CORRECTIONS {
-            let error = miss(correction);
-            if error.length() < 1e-12 * scale.max(torque.length()) {
-                self.joints[edge] = joint(correction);
+            let joint = Joint::new(parent, trial, child);
+            let miss = joint.torque(&stiffness, DVec3::ZERO) - torque;
+            let size = miss.length();
+            if size < allowed {
+                self.joints[edge] = trial;
                 return true;
             }
-            // On the axes of the child; the stiffness is never less than the true one, so that corrections fall short.
-            let spring = Joint::new(parent, joint(correction), child).stiffness(&stiffness);
-            correction -= (child.conjugate() * (spring.inverse() * error)).clamp_length_max(LONGEST_CORRECTION);
-            if !correction.is_finite() {
+            if size < least {
+                (best, least) = (trial, size);
+                let newton = joint.torque_by_half(trial, &stiffness).inverse() * -miss;
+                correction = newton.clamp_length_max(LONGEST_CORRECTION);
+            } else if correction.length() > SHORTEST_CORRECTION {
+                correction *= 0.5;
+            } else {
                 return false;
             }
+            // Half of a rotation by at most half a turn: the kernel knows no other.
+            let corrected = best * DQuat::from_scaled_axis(correction);
+            trial = half(corrected * corrected);
         }
         false
     }
@@ -88,30 +97,23 @@ impl RodRest {
     /// Whether every small rotation of the edges costs energy, where the joints hold the pose of the file under `share` of
     /// gravity: the second derivatives of the energy, a block for each edge and one
     /// for each pair of neighbours, are eliminated from the tip on, and all pivots have to be positive.
+    ///
+    /// A joint whose edges are turned together keeps its torque on its own axes, so that the derivative by the parent is the
+    /// opposite of that by the child, up to a part without symmetry that those of gravity and of the next joint make up for.
     pub fn is_stable(&self, step: &RodStep, share: f64) -> bool {
-        let (size, edges) = (1e-5, self.lengths.len());
         let mut weight = DVec3::ZERO;
         let mut beyond = DMat3::ZERO;
-        for edge in (self.held..edges).rev() {
+        for edge in (self.held..self.lengths.len()).rev() {
             weight += self.masses[edge + 1] * step.gravity * share;
-            let turned = |axis: DVec3| DQuat::from_scaled_axis(size * axis) * self.frames[edge];
-            // What the edge itself and its parent feel when it turns.
-            let own = |axis: DVec3| {
-                let frame = turned(axis);
-                let mut torque = self.lengths[edge] * (frame * DVec3::Z).cross(weight);
-                torque += self.torque(step, edge, self.parent(edge), frame);
-                if edge + 1 < edges {
-                    torque -= self.torque(step, edge + 1, frame, self.frames[edge + 1]);
-                }
-                torque
-            };
-            let on_parent = |axis: DVec3| -self.torque(step, edge, self.parent(edge), turned(axis));
-            let pivot = symmetric(columns(|axis| (own(-axis) - own(axis)) / (2.0 * size))) - beyond;
+            let along = self.frames[edge] * DVec3::Z;
+            let hanging = self.lengths[edge] * (along.dot(weight) * DMat3::IDENTITY - outer(along, weight));
+            let joint = Joint::new(self.parent(edge), self.joints[edge], self.frames[edge]);
+            let mixed = joint.torque_by_child(&self.stiffness(step, edge));
+            let pivot = symmetric(hanging - mixed) + beyond;
             if !is_positive(&pivot) {
                 return false;
             }
-            let mixed = columns(|axis| (on_parent(-axis) - on_parent(axis)) / (2.0 * size));
-            beyond = mixed * pivot.inverse() * mixed.transpose();
+            beyond = -symmetric(mixed + mixed * pivot.inverse() * mixed.transpose());
         }
         true
     }
@@ -124,14 +126,27 @@ impl RodRest {
         let bending = step.bending * self.stiffening / self.spans[edge];
         Stiffness { bending, twist_ratio: step.twist_ratio, lag: 0.0 }
     }
-
-    fn torque(&self, step: &RodStep, edge: usize, parent: DQuat, child: DQuat) -> DVec3 {
-        Joint::new(parent, self.joints[edge], child).torque(&self.stiffness(step, edge), DVec3::ZERO)
-    }
 }
 
-fn columns(of: impl Fn(DVec3) -> DVec3) -> DMat3 {
-    DMat3::from_cols(of(DVec3::X), of(DVec3::Y), of(DVec3::Z))
+/// The least power of [`STIFFER`] at which a strand stands, where it stands at all larger ones too.
+fn least_power(mut stands: impl FnMut(i32) -> bool) -> Option<i32> {
+    let (mut falls, mut power) = (-1, 0);
+    while !stands(power) {
+        if power == LARGEST_POWER {
+            return None;
+        }
+        falls = power;
+        power = (2 * power).clamp(1, LARGEST_POWER);
+    }
+    while power - falls > 1 {
+        let middle = falls + (power - falls) / 2;
+        if stands(middle) {
+            power = middle;
+        } else {
+            falls = middle;
+        }
+    }
+    Some(power)
 }
 
 fn symmetric(m: DMat3) -> DMat3 {
