@@ -1,11 +1,11 @@
 //! The f64 function of the `Direct` solver against what thin rods are known to do.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::{DQuat, DVec3};
 use tressfx_conformance::rod::links::Links;
-use tressfx_conformance::rod::strand::{LENGTH, bend, energy, line, run, settled, step, tip};
-use tressfx_conformance::rod::{G, chain, elastica, experiment, pendulum, threshold};
+use tressfx_conformance::rod::strand::{LENGTH, energy, line, run, settled, step, tip};
+use tressfx_conformance::rod::{G, chain, experiment, pendulum, threshold};
 use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, direct};
 
 /// Of a chain of edges: as good as none.
