@@ -10,6 +10,7 @@
 pub mod balance;
 pub mod chain;
 pub mod elastica;
+pub mod experiment;
 pub mod kirchhoff;
 pub mod links;
 pub mod ode;

@@ -311,6 +311,34 @@ pub fn real(path: &str) -> Option<Strands> {
     Some(strands_of(tressfx_asset::read(folder.join(path)).expect("the groom reads"), 0))
 }
 
+/// So many strands of an asset, evenly through the file.
+pub fn sampled(asset: &HairAsset, count: u32) -> HairAsset {
+    let strands = asset.counts.len();
+    let starts: Vec<usize> = asset
+        .counts
+        .iter()
+        .scan(0, |start, &count| {
+            *start += count as usize;
+            Some(*start - count as usize)
+        })
+        .collect();
+    let chosen: Vec<usize> = (0..count as usize).map(|i| i * strands / count as usize).collect();
+    let of = |strand: usize| starts[strand]..starts[strand] + asset.counts[strand] as usize;
+    let points = chosen.iter().flat_map(|&strand| asset.points[of(strand)].iter().copied()).collect();
+    let counts = chosen.iter().map(|&strand| asset.counts[strand]).collect();
+    let masses = asset
+        .inverse_mass
+        .as_ref()
+        .map(|masses| chosen.iter().flat_map(|&strand| masses[of(strand)].to_vec()).collect());
+    let sample = HairAsset::new(asset.name.clone(), asset.format, points, counts);
+    HairAsset {
+        inverse_mass: masses,
+        placement: asset.placement,
+        both_ends_immovable: asset.both_ends_immovable,
+        ..sample
+    }
+}
+
 /// Roundings of a coordinate that do not count as an error.
 const ROUNDINGS: f64 = 4.0;
 /// Roundings of a coordinate that the edges of a strand must have on average for f32 to know their directions.

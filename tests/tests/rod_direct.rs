@@ -1,12 +1,11 @@
 //! The f64 function of the `Direct` solver against what thin rods are known to do.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::{DQuat, DVec3};
-use tressfx_conformance::rod::kirchhoff::Kirchhoff;
 use tressfx_conformance::rod::links::Links;
-use tressfx_conformance::rod::strand::{LENGTH, bend, energy, line, run, settled, step, tip};
-use tressfx_conformance::rod::{G, chain, elastica, pendulum, threshold};
+use tressfx_conformance::rod::strand::{LENGTH, energy, line, run, settled, step, tip};
+use tressfx_conformance::rod::{G, chain, experiment, pendulum, threshold};
 use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, direct};
 
 /// Of a chain of edges: as good as none.
@@ -17,12 +16,9 @@ const SUB_STEP: f64 = 1.0 / 120.0;
 #[test]
 fn tips_are_where_the_heavy_elastica_has_them() {
     for (vertices, allowed) in [(8, 0.03), (16, 0.015), (32, 0.0075), (64, 0.005)] {
-        let rest = line(vertices, DVec3::X);
         let mut worst = (0.0, 0.0);
         for ratio in [0.1, 0.3, 1.0, 2.0, 3.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0, 30.0] {
-            let rod = settled(&step(1.0 / 60.0, LENGTH / ratio), &rest, 6.0);
-            let [along, up] = elastica::tip(ratio);
-            let error = (tip(&rod) / LENGTH).distance(DVec3::new(along, up, 0.0));
+            let error = experiment::elastica_error(vertices, ratio);
             worst = if error > worst.0 { (error, ratio) } else { worst };
         }
         println!("{vertices} vertices: the tip is off by {:.2} % of length at L / Lb = {}", 100.0 * worst.0, worst.1);
@@ -46,41 +42,11 @@ fn neither_sub_steps_nor_rounds_change_the_droop() {
     }
 }
 
-/// Frequency and damping ratio of a mode of a hanging strand, from its amplitude in the mode over ten periods.
-fn mode(vertices: usize, number: usize, length: f64) -> (f64, f64) {
-    let rest = line(vertices, DVec3::NEG_Y);
-    let step = step(length, NO_BENDING);
-    let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
-    bend(&rest, &mut rod, |share| 1e-3 * LENGTH * chain::shape(number, share));
-    let share = |i: usize| chain::shape(number, i as f64 / (vertices - 1) as f64);
-    let amplitude = |rod: &Rod| (0..vertices).map(|i| rest.masses[i] * share(i) * rod.positions[i].x).sum::<f64>();
-    let steps = (10.0 * TAU / chain::frequency(LENGTH, number) / length) as usize;
-    let mut values = vec![amplitude(&rod)];
-    for _ in 0..steps {
-        direct(&step, &rest, &mut rod);
-        values.push(amplitude(&rod));
-    }
-    let crossings: Vec<f64> = (1..values.len())
-        .filter(|&i| (values[i] > 0.0) != (values[i - 1] > 0.0))
-        .map(|i| (i as f64 - values[i] / (values[i] - values[i - 1])) * length)
-        .collect();
-    let last = crossings.len() - 1;
-    let frequency = PI * last as f64 / (crossings[last] - crossings[0]);
-    // The largest value between two crossings, by the parabola through three.
-    let peak = |i: usize| {
-        let (a, b, c) = (values[i - 1].abs(), values[i].abs(), values[i + 1].abs());
-        (b >= a && b >= c).then(|| b - (a - c) * (a - c) / (8.0 * (a - 2.0 * b + c)))
-    };
-    let peaks: Vec<f64> = (1..values.len() - 1).filter_map(peak).collect();
-    let damping = (peaks[0] / peaks[peaks.len() - 1]).ln() / (PI * (peaks.len() - 1) as f64);
-    (frequency, damping)
-}
-
 #[test]
 fn a_hanging_strand_swings_in_the_modes_of_the_bessel_function() {
     for vertices in [8, 16, 32, 64] {
         for (number, allowed) in [(1, 0.01), (2, 0.02), (3, 0.035)] {
-            let (frequency, damping) = mode(vertices, number, SUB_STEP);
+            let (frequency, damping) = experiment::mode(vertices, number, SUB_STEP);
             let error = frequency / chain::frequency(LENGTH, number) - 1.0;
             println!("{vertices} vertices, mode {number}: {:+.2} %, damping ratio {damping:.4}", 100.0 * error);
             assert!(error.abs() < allowed && damping.abs() < 0.01, "{vertices}, {number}: {error} {damping}");
@@ -154,51 +120,19 @@ fn energy_never_grows_above_its_start() {
     }
 }
 
-/// A helix along x: its points, as many as `vertices`.
-fn helix(vertices: usize, length: f64, radius: f64, pitch: f64) -> RodRest {
-    let rise = pitch / TAU;
-    let angle = length / radius.hypot(rise);
-    let at = |i: usize| {
-        let t = angle * i as f64 / (vertices - 1) as f64;
-        DVec3::new(radius * t.sin(), -rise * t, radius * t.cos())
-    };
-    RodRest::new(&(0..vertices).map(at).collect::<Vec<_>>(), 0)
-}
-
 #[test]
 fn a_helix_lengthens_as_a_kirchhoff_rod() {
-    let (length, radius, pitch, bending_length) = (0.3, 0.01_f64, 0.02_f64, 0.05_f64);
-    let rise = pitch / TAU;
-    let square = radius * radius + rise * rise;
-    // The frame of Frenet at the start: normal, binormal, tangent.
-    let tangent = DVec3::new(radius, -rise, 0.0).normalize();
-    let normal = DVec3::NEG_Z;
-    let root = DQuat::from_mat3(&glam::DMat3::from_cols(normal, tangent.cross(normal), tangent));
-    let torsion = -rise / square;
-    let rod = Kirchhoff {
-        length,
-        bending: G * bending_length.powi(3),
-        twist_ratio: 0.77,
-        natural: DVec3::new(0.0, radius / square, torsion),
-        gravity: DVec3::new(0.0, -G, 0.0),
-        steps: 4000,
-    };
-    let natural_tip = Kirchhoff { gravity: DVec3::ZERO, ..rod }.loaded(root, 1).expect("unloaded").1;
-    assert!(natural_tip.distance(helix(2000, length, radius, pitch).positions[1999]) < 1e-5, "{natural_tip}");
-    let (_, expected) = rod.loaded(root, 60).expect("a path without a turn");
-    let rest_height = rise / square.sqrt() * length;
-    println!("Kirchhoff: {:.2} % longer, tip at {expected}", 100.0 * (-expected.y / rest_height - 1.0));
+    let known = experiment::known_helix();
+    println!("Kirchhoff: {:.2} % longer, tip at {}", 100.0 * (known.longer - 1.0), known.tip);
     for (vertices, allowed) in [(48, 0.02), (96, 0.01), (192, 0.01)] {
-        let rest = helix(vertices, length, radius, pitch);
-        let rod = settled(&step(1.0 / 60.0, bending_length), &rest, 5.0);
-        let longer = -tip(&rod).y / rest_height;
-        let off = tip(&rod).distance(expected) / length;
+        let found = experiment::helix(vertices);
+        let off = found.tip.distance(known.tip) / experiment::HELIX_LENGTH;
         println!(
             "{vertices} vertices: {:.2} % longer, tip off by {:.2} % of length",
-            100.0 * (longer - 1.0),
+            100.0 * (found.longer - 1.0),
             100.0 * off
         );
-        assert!((longer / (-expected.y / rest_height) - 1.0).abs() < allowed, "{vertices}: {longer}");
+        assert!((found.longer / known.longer - 1.0).abs() < allowed, "{vertices}: {}", found.longer);
     }
 }
 
@@ -208,16 +142,7 @@ fn an_upright_strand_falls_over_where_greenhill_says() {
     let expected = threshold::greenhill();
     assert!(stands(0.99 * expected) && !stands(1.01 * expected));
     // The same in motion: a strand that is pushed a little stands up again, or falls.
-    let leaning = |ratio: f64, seconds: f64| {
-        let rest = line(32, DVec3::Y);
-        let step = RodStep { drag: [5.0; 2], ..step(1.0 / 60.0, LENGTH / ratio) };
-        let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
-        run(&RodStep { gravity: DVec3::new(0.05, -G, 0.0), ..step }, &rest, &mut rod, 0.5);
-        let pushed = tip(&rod).x;
-        run(&step, &rest, &mut rod, seconds);
-        tip(&rod).x / pushed
-    };
-    let (below, above) = (leaning(0.95 * expected, 8.0), leaning(1.05 * expected, 8.0));
+    let (below, above) = (experiment::lean(0.95 * expected), experiment::lean(1.05 * expected));
     println!("leans by {below:.3} and by {above:.3} of what it was pushed");
     assert!(below < 0.5 && above > 2.0, "{below} {above}");
 }
@@ -239,18 +164,7 @@ fn a_loaded_tip_buckles_where_euler_says() {
 fn a_hanging_arc_leaves_its_plane_where_bending_turns_into_twist() {
     for arc in [8.0, 12.0] {
         let expected = threshold::bend_twist(arc, 0.77);
-        let aside = |ratio: f64| {
-            // From the plane of the arc, x and y, a thousandth of the weight pulls it along z.
-            let vertices = 96;
-            let radius = LENGTH / arc;
-            let at = |i: usize| {
-                let t = arc * i as f64 / (vertices - 1) as f64;
-                DVec3::new(radius * (1.0 - t.cos()), -radius * t.sin(), 0.0)
-            };
-            let rest = RodRest::new(&(0..vertices).map(at).collect::<Vec<_>>(), 0);
-            let pull = RodStep { gravity: DVec3::new(0.0, -G, 1e-3 * G), ..step(1.0 / 60.0, LENGTH / ratio) };
-            (tip(&settled(&pull, &rest, 12.0)).z / LENGTH).abs()
-        };
+        let aside = |ratio: f64| experiment::arc_aside(arc, ratio);
         let (below, above) = (aside(0.95 * expected), aside(1.05 * expected));
         println!("arc of {arc}: aside by {below:.1e} below the threshold and {above:.1e} above it");
         assert!(above > 10.0 * below, "{arc}: {below} {above}");

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::{DQuat, DVec3};
 use tressfx_conformance::rod::ode::root;
 use tressfx_conformance::rod::strand::{LENGTH, line, step, tip};
-use tressfx_conformance::rod::{G, threshold};
+use tressfx_conformance::rod::{G, experiment};
 use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, TipHold, direct};
 
 const SUB_STEP: f64 = 1.0 / 120.0;
@@ -49,39 +49,11 @@ fn a_held_tip_stays_where_it_is_held() {
     }
 }
 
-/// A straight rod without weight that is bent to a ring, both ends held; its twist from end to end, in parts of what it is given,
-/// four seconds after it was brought to this share of Michell's threshold and pushed a little.
-fn twist_of_a_ring(vertices: usize, share: f64) -> f64 {
-    let radius = LENGTH / TAU;
-    let at = |i: usize| {
-        let t = TAU * i as f64 / (vertices - 1) as f64;
-        radius * DVec3::new(1.0 - t.cos(), 0.0, t.sin())
-    };
-    let mut rest = RodRest::new(&(0..vertices).map(at).collect::<Vec<_>>(), 0);
-    let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
-    rest.joints.fill(DQuat::IDENTITY);
-    let goal = share * threshold::michell(0.77);
-    for i in 0..1680 {
-        let turn = goal * (f64::from(i) / 1080.0).min(1.0);
-        let push = if (1080..1140).contains(&i) { DVec3::new(0.0, 0.05, 0.03) } else { DVec3::ZERO };
-        let frame = Some(DQuat::from_rotation_z(turn));
-        let held = RodStep {
-            gravity: push,
-            drag: [20.0; 2],
-            damping: 1e-3,
-            tip: Some(TipHold { place: DVec3::ZERO, frame }),
-            ..step(SUB_STEP, 0.1)
-        };
-        direct(&held, &rest, &mut rod);
-    }
-    rod.strains.iter().map(|strain| strain.z).sum::<f64>() / goal
-}
-
 #[test]
 fn a_twisted_ring_leaves_its_plane_where_michell_says() {
     // Above the threshold it coils up, passes through itself and has two turns less.
     for vertices in [48, 96] {
-        let (below, above) = (twist_of_a_ring(vertices, 0.95), twist_of_a_ring(vertices, 1.05));
+        let (below, above) = (experiment::twist_of_a_ring(vertices, 0.95), experiment::twist_of_a_ring(vertices, 1.05));
         println!("{vertices} vertices: twist {below:.3} below the threshold and {above:.3} above it");
         assert!(below > 0.97 && above < 0.3, "{vertices}: {below} {above}");
     }

@@ -81,17 +81,21 @@ pub(crate) fn docs() -> Result<(), String> {
     Ok(())
 }
 
-/// Measures error against run time, of the release program unless `--program` names one. What measures is a program of its own:
-/// so xtask has no dependencies, and whoever wants the demo does not build what draws plots.
+/// Measures error against run time: of pictures, of the release program unless `--program` names one, or with `--motion` of solvers.
+/// What measures are programs of their own: so xtask has no dependencies, and whoever wants the demo does not build what draws
+/// plots.
 pub(crate) fn accuracy(words: &[&str]) -> Result<(), String> {
     let given = words.iter().position(|word| *word == "--program").and_then(|at| words.get(at + 1));
     let program = given.map_or_else(|| tressfx("release"), |path| Ok(PathBuf::from(path)))?;
     if words.iter().all(|word| *word != "--help") {
         driver::ensure(&program)?;
     }
-    let mut command = cargo(&["run", "--quiet", "--package", "tressfx-accuracy", "--"]);
-    command.args(words);
-    if given.is_none() {
+    let is_motion = words.contains(&"--motion");
+    // The motion's references are simulated by the program that measures: it is built to be fast.
+    let package: &[&str] = if is_motion { &["tressfx-motion", "--release"] } else { &["tressfx-accuracy"] };
+    let mut command = cargo(&["run", "--quiet", "--package"]);
+    command.args(package).arg("--").args(words.iter().filter(|word| **word != "--motion"));
+    if given.is_none() && !is_motion {
         command.arg("--program").arg(program);
     }
     command.arg("--docs").arg(root().join("docs").join("accuracy"));

@@ -9,6 +9,7 @@ mod validation;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
+       cargo xtask accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known]
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
@@ -17,7 +18,9 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] 
   docs   makes the pictures of README.md and docs/ anew
   accuracy
          measures the error of each technique against the reference renderer, and its time, into docs/accuracy; with --check it
-         fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set";
+         fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set.
+         With --motion it does the same for the solvers, their sub-steps, rounds and vertices, into docs/accuracy/motion.md; with --known it makes
+         the plots of docs/motion.md";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();

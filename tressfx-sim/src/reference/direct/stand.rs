@@ -87,7 +87,9 @@ impl RodRest {
             } else {
                 return false;
             }
-            trial = (best * DQuat::from_scaled_axis(correction)).normalize();
+            // Half of a rotation by at most half a turn: the kernel knows no other.
+            let corrected = best * DQuat::from_scaled_axis(correction);
+            trial = half(corrected * corrected);
         }
         false
     }
