@@ -101,7 +101,7 @@ impl Case {
         let clock = clock_params(dice, most_a_frame);
         let frame = (clock.max_frame / clock.sub_step).floor().max(1.0);
         let frames = (sub_steps / frame).clamp(3.0, 60.0) as u32;
-        let mut params = sim_params(dice);
+        let mut params = sim_params(dice, solver);
         if is_crowded {
             // The rest of each rod is found on the CPU.
             params.sag_free = 0.0;
@@ -128,6 +128,7 @@ fn place(strands: &Strands, solver: SolverName, clock: &ClockParams) -> Place {
     Place {
         bounds,
         metres_per_unit: strands.metres_per_unit,
+        solver,
         guides: strands.guides,
         most_colliders: if solver.has_contacts() { 8 } else { 0 },
         max_frame: clock.max_frame,

@@ -21,9 +21,9 @@ impl Dice {
     /// The numbers of a name.
     pub fn of(&self, name: &str) -> Rolls {
         // FNV-1a.
-        let hash = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
+        let hash = name
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
         let mut random = Pcg64::new((u128::from(self.seed) << 64) | u128::from(hash), u128::from(hash));
         // The first numbers of seeds beside each other are alike.
         let _: [u64; 4] = random.random();

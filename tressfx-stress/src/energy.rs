@@ -7,7 +7,7 @@ use tressfx_sim::SimParams;
 use crate::case::SolverName;
 
 /// Roundings of a coordinate that a distance may be off by.
-pub const ROUNDINGS: f64 = 4.0;
+pub const ROUNDINGS: f64 = 16.0;
 
 /// Energies of guides, and what they began with. Strands that begin in the pose of their file with joints that want this pose have no
 /// energy but that of their place: what moves and what is lifted may never have more, since what is bent has no less than nothing.
@@ -88,9 +88,8 @@ impl<'a> Ledger<'a> {
         let velocity = |i: usize| (after[i].truncate().as_dvec3() - before[i].truncate().as_dvec3()) / sub_step;
         let range = self.range(guide);
         let of_vertices: f64 = range.clone().map(|i| self.mass(i) * velocity(i).length_squared()).sum();
-        let of_edge = |i: usize| {
-            f64::from(self.strands.rest_lengths[i]) * (velocity(i + 1) - velocity(i)).length_squared()
-        };
+        let of_edge =
+            |i: usize| f64::from(self.strands.rest_lengths[i]) * (velocity(i + 1) - velocity(i)).length_squared();
         let of_edges: f64 = (range.start..range.end - 1).map(of_edge).sum();
         0.5 * (of_vertices - self.correction * of_edges)
     }
@@ -117,7 +116,8 @@ mod tests {
         let ledger = Ledger::new(&strands, &params, SolverName::Direct, Quat::IDENTITY, Vec3::ZERO);
         let (angle, sub_step) = (1.0_f64, 1e-3);
         let turning = speed * (3.0 * 9.81 * angle.sin() / 0.1).sqrt();
-        let at = |angle: f64| vec![Vec4::ZERO, Vec4::new(10.0 * angle.cos() as f32, -10.0 * angle.sin() as f32, 0.0, 1.0)];
+        let at =
+            |angle: f64| vec![Vec4::ZERO, Vec4::new(10.0 * angle.cos() as f32, -10.0 * angle.sin() as f32, 0.0, 1.0)];
         let (before, after) = (at(angle - 0.5 * turning * sub_step), at(angle + 0.5 * turning * sub_step));
         ledger.most_gained(&before, &after, sub_step)
     }

@@ -231,10 +231,13 @@ mod tests {
         for vertices in [2, 256] {
             assert!(strands.iter().any(|strands| strands.vertices == vertices), "{vertices}");
         }
-        let some_edge = |of: &dyn Fn(f32) -> bool| strands.iter().any(|strands| strands.rest_lengths.iter().any(|&l| of(l)));
+        let some_edge =
+            |of: &dyn Fn(f32) -> bool| strands.iter().any(|strands| strands.rest_lengths.iter().any(|&l| of(l)));
         assert!(some_edge(&|length| length == 0.0) && some_edge(&|length| length > 10.0));
         assert!(some_edge(&|length| length > 0.0 && length < 1e-7));
-        assert!(strands.iter().any(|strands| strands.guides == 1) && strands.iter().any(|strands| strands.guides > 500));
+        assert!(
+            strands.iter().any(|strands| strands.guides == 1) && strands.iter().any(|strands| strands.guides > 500)
+        );
     }
 
     #[test]

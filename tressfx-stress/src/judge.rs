@@ -186,9 +186,10 @@ fn speeds(strands: &Strands, before: &[Vec4], sight: &Sight) -> Vec<f64> {
     let vertices = strands.vertices as usize;
     let pairs = before.chunks(vertices).zip(sight.positions.chunks(vertices)).take(strands.guides as usize);
     let speed = |(before, after): (&[Vec4], &[Vec4])| {
-        let moved = before.iter().zip(after).map(|(before, after)| {
-            before.truncate().as_dvec3().distance(after.truncate().as_dvec3())
-        });
+        let moved = before
+            .iter()
+            .zip(after)
+            .map(|(before, after)| before.truncate().as_dvec3().distance(after.truncate().as_dvec3()));
         let moved = (moved.fold(0.0, f64::max) - rounding(after)).max(0.0);
         moved / sight.sub_step * f64::from(strands.metres_per_unit)
     };

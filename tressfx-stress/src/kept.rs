@@ -47,7 +47,8 @@ pub fn minimised(gpu: &mut Gpu, mut failure: Failure) -> Result<Failure> {
     part.strands = case.strands.guides;
     while part.strands > 1 {
         let half = part.strands.div_ceil(2);
-        let halves = [Part { strands: half, ..part }, Part { first: part.first + half, strands: part.strands - half, ..part }];
+        let halves =
+            [Part { strands: half, ..part }, Part { first: part.first + half, strands: part.strands - half, ..part }];
         let Some((smaller, trouble)) = first_that_fails(gpu, &failure, &halves)? else { break };
         part = smaller;
         failure = Failure { part, trouble, ..failure };

@@ -32,6 +32,9 @@ struct Args {
     /// Draw no map of stability
     #[arg(long)]
     no_map: bool,
+    /// Try nothing: write the page and the maps anew from what a run has counted
+    #[arg(long, requires = "docs")]
+    pages: bool,
     /// Begin anew
     #[arg(long)]
     fresh: bool,
@@ -80,8 +83,14 @@ fn main() -> Result<()> {
     }
     std::fs::create_dir_all(&args.work).with_context(|| args.work.display().to_string())?;
     let path = args.work.join("run.json");
+    if args.pages {
+        let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        return report(&serde_json::from_str(&text)?, args.docs.as_deref());
+    }
     let state = match args.fresh {
-        true => State { program: State::resume(Path::new(""), args.settings())?.program, ..State::new(args.settings()) },
+        true => {
+            State { program: State::resume(Path::new(""), args.settings())?.program, ..State::new(args.settings()) }
+        }
         false => State::resume(&path, args.settings())?,
     };
     let mut run = Run::new(state, Some(path))?;

@@ -8,6 +8,7 @@ use tressfx_core::strands::Bounds;
 use tressfx_core::view::Pose;
 use tressfx_sim::{Collider, SimParams, Wind};
 
+use crate::case::SolverName;
 use crate::dice::{Dice, Rolls};
 use crate::params::{SUB_STEPS_A_FRAME, sim_params};
 
@@ -73,6 +74,8 @@ pub struct Place {
     pub bounds: Bounds,
     /// Metres that a unit of the file stands for.
     pub metres_per_unit: f32,
+    /// What moves the strands.
+    pub solver: SolverName,
     /// Guides of the groom.
     pub guides: u32,
     /// The most colliders of a frame; 0 where the solver has no contacts.
@@ -150,7 +153,7 @@ fn wind(rolls: &mut Rolls) -> Wind {
 
 fn change(rolls: &mut Rolls, place: &Place) -> Change {
     match rolls.whole(0..=2) {
-        0 => Change::Params(Box::new(sim_params(Dice::new(rolls.whole(0..=u32::MAX).into())))),
+        0 => Change::Params(Box::new(sim_params(Dice::new(rolls.whole(0..=u32::MAX).into()), place.solver))),
         1 => Change::SubStep(rolls.decades((place.max_frame / SUB_STEPS_A_FRAME).max(1e-5)..=place.max_frame.min(0.1))),
         _ => Change::Reset,
     }
@@ -283,7 +286,14 @@ mod tests {
     #[test]
     fn everything_that_happens_is_legal() {
         let bounds = Bounds { min: Vec3::splat(-0.2), max: Vec3::splat(0.3) };
-        let place = Place { bounds, metres_per_unit: 0.01, guides: 3, most_colliders: 8, max_frame: 0.1 };
+        let place = Place {
+            bounds,
+            metres_per_unit: 0.01,
+            solver: SolverName::Direct,
+            guides: 3,
+            most_colliders: 8,
+            max_frame: 0.1,
+        };
         let (mut alone, mut jumps) = (0, 0);
         for seed in 0..500 {
             let script = script(Dice::new(seed), &place, 40);

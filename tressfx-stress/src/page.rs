@@ -93,7 +93,8 @@ fn failures(state: &State) -> String {
     if state.failures.is_empty() {
         return String::from("No case failed.\n\n");
     }
-    let mut list = String::from("## Cases that failed\n\nEach with the smallest part of it that still fails in the same way.\n\n");
+    let mut list =
+        String::from("## Cases that failed\n\nEach with the smallest part of it that still fails in the same way.\n\n");
     for failure in &state.failures {
         let _ = writeln!(list, "* {failure}");
     }
@@ -131,7 +132,9 @@ mod tests {
         state.tallies.entry(SolverName::Direct).or_default().add(77, &verdict, true);
         state.seconds = 1800.0;
         let page = page(&state);
-        for text in ["Seed 5, 0.50 hours", "| cases | 1 |", "3.0e-7 (seed 77)", "| below 1e-6 | 100.0 % |", "No case failed"] {
+        for text in
+            ["Seed 5, 0.50 hours", "| cases | 1 |", "3.0e-7 (seed 77)", "| below 1e-6 | 100.0 % |", "No case failed"]
+        {
             assert!(page.contains(text), "{text}:\n{page}");
         }
         assert!(!page.contains(".svg"));

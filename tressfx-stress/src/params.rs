@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use tressfx_sim::{ClockParams, SimParams};
 
+use crate::case::SolverName;
 use crate::dice::Dice;
 
 /// How often a parameter is at one of the ends of its range.
@@ -24,7 +25,9 @@ fn number(dice: Dice, name: &str, range: RangeInclusive<f64>, usual: f64) -> f64
     }
     let spans_decades = *range.end() >= 50.0 * range.start().max(0.0);
     match (spans_decades, *range.start()) {
-        (true, start) if start >= 0.0 && rolls.chance(0.7) => rolls.decades(start.max(1e-5 * range.end())..=*range.end()),
+        (true, start) if start >= 0.0 && rolls.chance(0.7) => {
+            rolls.decades(start.max(1e-5 * range.end())..=*range.end())
+        }
         _ => rolls.even(range),
     }
 }
@@ -41,27 +44,46 @@ fn share(dice: Dice, name: &str, usual: f32) -> f32 {
     (if !is_usual && dice.of(name).chance(0.3) { 1.0 - share } else { share }) as f32
 }
 
-/// All parameters of a section. One case in eight has those of [`SimParams::default`].
-pub fn sim_params(dice: Dice) -> SimParams {
+/// All parameters that a solver knows. One case in eight has those of [`SimParams::default`].
+pub fn sim_params(dice: Dice, solver: SolverName) -> SimParams {
     let usual = SimParams::default();
     if dice.of("usual params").chance(0.125) {
         return usual;
     }
     let real = |name: &str, range: RangeInclusive<f64>, usual: f32| number(dice, name, range, usual.into()) as f32;
-    SimParams {
+    let shared = SimParams {
         gravity: gravity(dice),
+        tip_separation: Some(real("tip_separation", -1.0..=100.0, 0.0)).filter(|separation| *separation != 0.0),
+        friction: share(dice, "friction", usual.friction),
+        ..usual
+    };
+    match solver {
+        SolverName::Direct => direct_params(dice, shared),
+        SolverName::Tressfx => tressfx_params(dice, shared),
+    }
+}
+
+fn tressfx_params(dice: Dice, usual: SimParams) -> SimParams {
+    let real = |name: &str, range: RangeInclusive<f64>, usual: f32| number(dice, name, range, usual.into()) as f32;
+    SimParams {
         damping: share(dice, "damping", usual.damping),
         local_stiffness: share(dice, "local_stiffness", usual.local_stiffness),
         local_iterations: whole(dice, "local_iterations", 1..=16, usual.local_iterations),
         global_stiffness: share(dice, "global_stiffness", usual.global_stiffness),
         global_range: share(dice, "global_range", usual.global_range),
-        length_iterations: whole(dice, "length_iterations", 0..=16, usual.length_iterations),
+        // A kernel is compiled for each number.
+        length_iterations: dice.of("length_iterations").one_of(&[0, 1, usual.length_iterations, 16]),
         shock: share(dice, "shock", usual.shock),
         shock_acceleration: real("shock_acceleration", 0.0..=1e9, usual.shock_acceleration),
         max_speed: real("max_speed", 0.001..=1000.0, usual.max_speed),
-        tip_separation: Some(real("tip_separation", -1.0..=100.0, 0.0)).filter(|separation| *separation != 0.0),
         wind_drag: real("wind_drag", 0.0..=1000.0, usual.wind_drag),
-        friction: share(dice, "friction", usual.friction),
+        ..usual
+    }
+}
+
+fn direct_params(dice: Dice, usual: SimParams) -> SimParams {
+    let real = |name: &str, range: RangeInclusive<f64>, usual: f32| number(dice, name, range, usual.into()) as f32;
+    SimParams {
         bending_length: real("bending_length", 0.002..=10.0, usual.bending_length),
         twist_ratio: real("twist_ratio", 0.1..=10.0, usual.twist_ratio),
         internal_damping: real("internal_damping", 0.0..=1.0, usual.internal_damping),
@@ -70,6 +92,7 @@ pub fn sim_params(dice: Dice) -> SimParams {
         pull_frequency: real("pull_frequency", 0.0..=100.0, usual.pull_frequency),
         sag_free: share(dice, "sag_free", usual.sag_free),
         rounds: whole(dice, "rounds", 1..=8, usual.rounds),
+        ..usual
     }
 }
 
@@ -117,17 +140,21 @@ mod tests {
 
     #[test]
     fn all_of_them_are_legal_and_reach_the_ends_of_their_ranges() {
-        let params: Vec<_> = (0..2000).map(|seed| sim_params(Dice::new(seed))).collect();
-        for (seed, params) in params.iter().enumerate() {
+        let of = |solver| (0..2000).map(|seed| sim_params(Dice::new(seed), solver)).collect::<Vec<_>>();
+        let (params, published) = (of(SolverName::Direct), of(SolverName::Tressfx));
+        for (seed, params) in params.iter().chain(&published).enumerate() {
             params.validate().unwrap_or_else(|error| panic!("{seed}: {error}"));
-            clock_params(Dice::new(seed as u64), SUB_STEPS_A_FRAME).validate().unwrap_or_else(|error| panic!("{seed}: {error}"));
+            clock_params(Dice::new(seed as u64), SUB_STEPS_A_FRAME)
+                .validate()
+                .unwrap_or_else(|error| panic!("{seed}: {error}"));
         }
         let has = |of: &dyn Fn(&SimParams) -> f32, value: f32| params.iter().any(|params| of(params) == value);
         for value in [0.002, 10.0, 0.05] {
             assert!(has(&|params| params.bending_length, value), "{value}");
         }
         assert!(has(&|params| params.air_drag, 0.0) && has(&|params| params.rounds as f32, 8.0));
-        assert!(has(&|params| params.gravity.length(), 0.0) && has(&|params| params.local_stiffness, 1.0));
+        assert!(has(&|params| params.gravity.length(), 0.0));
+        assert!(published.iter().any(|params| params.local_stiffness == 1.0 && params.local_iterations == 16));
         let soft = params.iter().filter(|params| params.bending_length < 0.01).count();
         assert!(soft > 100, "{soft} of 2000 are softer than 1 cm");
     }

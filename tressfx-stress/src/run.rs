@@ -123,7 +123,8 @@ impl Run {
     /// # Errors
     /// What the simulation or a backend says.
     pub fn map(&mut self) -> Result<()> {
-        let columns = self.state.settings.solvers.iter().flat_map(|&solver| VERTICES.map(|vertices| (solver, vertices)));
+        let columns =
+            self.state.settings.solvers.iter().flat_map(|&solver| VERTICES.map(|vertices| (solver, vertices)));
         let is_there = |(solver, vertices): &(SolverName, u32)| {
             self.state.map.iter().any(|cell| (cell.solver, cell.vertices) == (*solver, *vertices))
         };
@@ -173,7 +174,11 @@ impl Run {
         let seed = Dice::new(self.state.settings.seed).case(index);
         let solvers = &self.state.settings.solvers;
         let solver = solvers[index as usize % solvers.len()];
-        bar.set_message(format!("case {index} (seed {seed}, {}), {} failures", solver.name(), self.state.failures.len()));
+        bar.set_message(format!(
+            "case {index} (seed {seed}, {}), {} failures",
+            solver.name(),
+            self.state.failures.len()
+        ));
         let turn = index / solvers.len() as u64;
         let first = turn as usize % self.gpus.len();
         let is_compared = self.gpus.len() > 1 && turn.is_multiple_of(COMPARED);
