@@ -1,5 +1,7 @@
 //! Cases.
 
+use std::fmt;
+
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use tressfx_core::strands::{Bounds, Strands, StrandsError};
@@ -14,9 +16,9 @@ use crate::params::{SUB_STEPS_A_FRAME, clock_params, sim_params};
 pub const DIRECT_HAS_CONTACTS: bool = false;
 
 /// Vertices of guides times sub-steps, in either part of a case: what keeps a case from taking minutes.
-const WORK: f64 = 2e6;
+const WORK: f64 = 5e5;
 /// Sub-steps in either part of a case.
-const SUB_STEPS: f64 = 2000.0;
+const SUB_STEPS: f64 = 1000.0;
 
 /// A solver, as one types it.
 #[derive(Clone, Copy, Debug, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize, ValueEnum)]
@@ -120,6 +122,22 @@ impl Case {
     pub fn most_colliders(&self) -> usize {
         let frames = self.script.frames.iter().map(|frame| frame.colliders.len());
         frames.chain([self.script.resting_on.len()]).max().unwrap_or(0)
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Strands { guides, vertices, follows, metres_per_unit, rest_lengths, .. } = &self.strands;
+        let Script { head, own_roots, frames, is_left_alone, .. } = &self.script;
+        let lengths =
+            rest_lengths.chunks(*vertices as usize).map(|lengths| lengths.iter().sum::<f32>() * metres_per_unit);
+        let longest = lengths.fold(0.0, f32::max);
+        writeln!(
+            f,
+            "{guides} guides of {vertices} vertices, up to {longest} m long, {follows} follow each; {metres_per_unit} m a unit"
+        )?;
+        writeln!(f, "{:?}\n{:?}", self.params, self.clock)?;
+        write!(f, "{} frames, head {head:?}, own roots {own_roots}, left alone {is_left_alone}", frames.len())
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Parser, ValueEnum};
-use tressfx_stress::case::{Part, SolverName};
+use tressfx_stress::case::{Case, Part, SolverName};
 use tressfx_stress::gpu::{BackendName, Gpu};
 use tressfx_stress::judge::judge;
 use tressfx_stress::run::{Run, Settings, State};
@@ -107,6 +107,7 @@ fn play(seed: u64, settings: &Settings) -> Result<()> {
     for &name in &settings.backends {
         let mut gpu = Gpu::open(name)?;
         for &solver in &settings.solvers {
+            println!("{}", Case::new(seed, solver, Part::ALL)?);
             let verdict = judge(&mut gpu, seed, solver, Part::ALL)?;
             println!("seed {seed}, {}, {}: {verdict:?}", solver.name(), name.name());
             failed += verdict.troubles.len();

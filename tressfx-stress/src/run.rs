@@ -21,7 +21,7 @@ use crate::verdict::{Failure, Trouble, Verdict};
 /// Of so many cases one is played on both backends.
 const COMPARED: u64 = 4;
 /// Failures of one kind that are made smaller and kept; more are only counted.
-const KEPT_OF_A_KIND: usize = 8;
+const KEPT_OF_A_KIND: usize = 4;
 
 /// What is tried.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
