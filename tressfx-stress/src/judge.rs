@@ -175,7 +175,7 @@ fn worst_edge(strands: &Strands, positions: &[Vec4]) -> f64 {
         for (edge, &rest) in strand.windows(2).zip(lengths).filter(|(_, rest)| **rest > shortest) {
             let length = edge[1].truncate().as_dvec3().distance(edge[0].truncate().as_dvec3());
             let error = ((length - f64::from(rest)).abs() - rounding).max(0.0) / f64::from(rest);
-            worst = worst.max(if error.is_nan() { f64::INFINITY } else { error });
+            worst = worst.max(if length.is_finite() { error } else { f64::INFINITY });
         }
     }
     worst

@@ -34,6 +34,11 @@ pub fn page(state: &State) -> String {
     page
 }
 
+/// What is said of a tally in a row of a table.
+type Said<'a> = &'a dyn Fn(&Tally) -> String;
+/// What is measured, and the powers of ten that it is told by.
+type Measured<'a> = (&'a str, &'a dyn Fn(&Tally) -> &Spread, [i32; 3]);
+
 fn columns<'a>(state: &'a State, of: &dyn Fn(&'a Tally) -> String) -> String {
     state.tallies.values().map(|tally| format!(" {} |", of(tally))).collect()
 }
@@ -45,7 +50,7 @@ fn heading(state: &State, first: &str) -> String {
 
 fn counts(state: &State) -> String {
     let mut table = heading(state, "counted");
-    let rows: [(&str, &dyn Fn(&Tally) -> String); 10] = [
+    let rows: [(&str, Said); 10] = [
         ("cases", &|tally| tally.cases.to_string()),
         ("of them on both backends, equal to the bit unless they failed", &|tally| tally.compared.to_string()),
         ("sub-steps", &|tally| tally.sub_steps.to_string()),
@@ -65,7 +70,7 @@ fn counts(state: &State) -> String {
 
 fn spreads(state: &State) -> String {
     let mut table = heading(state, "measured");
-    let rows: [(&str, &dyn Fn(&Tally) -> &Spread, [i32; 3]); 3] = [
+    let rows: [Measured; 3] = [
         ("worst edge error of a case, of its length, beyond rounding", &|tally| &tally.edge, [-6, -4, -2]),
         ("energy gained, of a fall by the strand's length", &|tally| &tally.energy, [-6, -3, 0]),
         ("highest speed after half a second of calm, m/s", &|tally| &tally.rest_speed, [-3, -1, 1]),
@@ -93,8 +98,9 @@ fn failures(state: &State) -> String {
     if state.failures.is_empty() {
         return String::from("No case failed.\n\n");
     }
-    let mut list =
-        String::from("## Cases that failed\n\nEach with the smallest part of it that still fails in the same way.\n\n");
+    let mut list = String::from(
+        "## Cases that failed\n\nThe first of each kind with the smallest part of it that still fails in the same way.\n\n",
+    );
     for failure in &state.failures {
         let _ = writeln!(list, "* {failure}");
     }

@@ -20,8 +20,8 @@ use crate::verdict::{Failure, Trouble, Verdict};
 
 /// Of so many cases one is played on both backends.
 const COMPARED: u64 = 4;
-/// Failures of one kind that are made smaller and kept; more are only counted.
-const KEPT_OF_A_KIND: usize = 4;
+/// Failures of one kind that are made smaller; that takes longer than to find them.
+const MADE_SMALLER: usize = 4;
 
 /// What is tried.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -199,7 +199,8 @@ impl Run {
     fn fail(&mut self, bar: &ProgressBar, gpu: usize, failure: Failure) -> Result<()> {
         bar.suspend(|| eprintln!("{failure}"));
         let same = |kept: &&Failure| (kept.solver, kept.trouble.kind()) == (failure.solver, failure.trouble.kind());
-        if self.state.failures.iter().filter(same).count() >= KEPT_OF_A_KIND {
+        if self.state.failures.iter().filter(same).count() >= MADE_SMALLER {
+            self.state.failures.push(failure);
             return Ok(());
         }
         let smaller = minimised(&mut self.gpus[gpu], failure)?;
