@@ -98,6 +98,16 @@ pub(crate) fn accuracy(words: &[&str]) -> Result<(), String> {
     run(command.arg("--work").arg(root().join("out").join("accuracy")))
 }
 
+/// Plays random and hostile cases.
+pub(crate) fn stress(words: &[&str]) -> Result<(), String> {
+    if words.iter().all(|word| *word != "--help") {
+        driver::ensure(&tressfx("debug")?)?;
+    }
+    let mut command = cargo(&["run", "--quiet", "--package", "tressfx-stress", "--"]);
+    command.args(words).arg("--docs").arg(root().join("docs"));
+    run(command.arg("--work").arg(root().join("out").join("stress")))
+}
+
 /// Everything that a change must pass.
 pub(crate) fn test() -> Result<(), String> {
     step(&["fmt", "--all", "--check"])?;

@@ -1,4 +1,5 @@
-//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`, `cargo xtask accuracy`.
+//! Chores of the workspace: `cargo xtask demo`, `cargo xtask test`, `cargo xtask docs`, `cargo xtask accuracy`,
+//! `cargo xtask stress`.
 
 mod chore;
 mod compilers;
@@ -9,6 +10,7 @@ mod validation;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
+       | stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
@@ -17,7 +19,9 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] 
   docs   makes the pictures of README.md and docs/ anew
   accuracy
          measures the error of each technique against the reference renderer, and its time, into docs/accuracy; with --check it
-         fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set";
+         fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set
+  stress plays random and hostile cases for an hour, or as long as it is told, and counts what goes wrong, into docs/stress.md; a run
+         that was stopped goes on. A few of these cases are part of `test`";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -26,6 +30,7 @@ fn main() -> ExitCode {
         ["test"] => chore::test(),
         ["docs"] => chore::docs(),
         ["accuracy", ref words @ ..] => chore::accuracy(words),
+        ["stress", ref words @ ..] => chore::stress(words),
         _ => Err(String::from(USAGE)),
     };
     match done {
