@@ -6,7 +6,7 @@ use tressfx_stress::kept::kept;
 use tressfx_stress::run::{Run, Settings, State};
 
 /// Cases of each solver.
-const CASES: u64 = 24;
+const CASES: u64 = 20;
 
 fn short(solver: SolverName) {
     let backends = vec![BackendName::Wgpu, BackendName::Vulkan];
