@@ -12,9 +12,6 @@ use crate::groom::groom;
 use crate::motion::{Place, Script, script};
 use crate::params::{SUB_STEPS_A_FRAME, clock_params, sim_params};
 
-/// Whether [`Solver::Direct`] knows contacts. Where it does not, its cases have no colliders.
-pub const DIRECT_HAS_CONTACTS: bool = false;
-
 /// Vertices of guides times sub-steps, in either part of a case: what keeps a case from taking minutes.
 const WORK: f64 = 5e5;
 /// The most vertices of guides that `Direct` is asked to hold against gravity: what each joint has to want is found on the CPU, and where a
@@ -48,10 +45,6 @@ impl SolverName {
             Self::Direct => "direct",
             Self::Tressfx => "tressfx",
         }
-    }
-
-    fn has_contacts(self) -> bool {
-        self == Self::Tressfx || DIRECT_HAS_CONTACTS
     }
 }
 
@@ -149,7 +142,7 @@ fn place(strands: &Strands, solver: SolverName, clock: &ClockParams) -> Place {
         metres_per_unit: strands.metres_per_unit,
         solver,
         guides: strands.guides,
-        most_colliders: if solver.has_contacts() { 8 } else { 0 },
+        most_colliders: 8,
         max_frame: clock.max_frame,
     }
 }
@@ -181,15 +174,5 @@ mod tests {
             assert_eq!((small.strands.guides, small.strands.vertices), (1, case.strands.vertices), "{seed}");
             assert!(small.script.frames.len() <= 2 && small.clock == case.clock && small.params == case.params);
         }
-    }
-
-    #[test]
-    fn only_solvers_with_contacts_get_colliders() {
-        let colliders = |solver| {
-            let of = |seed| Case::new(seed, solver, Part::ALL).unwrap().most_colliders();
-            (0..60).map(of).sum::<usize>()
-        };
-        assert!(colliders(SolverName::Tressfx) > 0);
-        assert_eq!(colliders(SolverName::Direct) > 0, DIRECT_HAS_CONTACTS);
     }
 }

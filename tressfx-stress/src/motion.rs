@@ -78,7 +78,7 @@ pub struct Place {
     pub solver: SolverName,
     /// Guides of the groom.
     pub guides: u32,
-    /// The most colliders of a frame; 0 where the solver has no contacts.
+    /// The most colliders of a frame.
     pub most_colliders: u32,
     /// The longest frame that is simulated, s.
     pub max_frame: f64,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::case::{DIRECT_HAS_CONTACTS, SolverName};
+use crate::case::SolverName;
 use crate::run::State;
 use crate::tally::{Spread, Tally};
 
@@ -16,9 +16,6 @@ pub fn page(state: &State) -> String {
          jump by 100 m and spin with 100 turns a second, roots that move by themselves, wind, capsules that swallow the groom, sub-steps \
          from 0.01 ms to 0.1 s, frames of 0 s, of a day, and backwards. Half a second of calm follows.\n\n",
     );
-    if !DIRECT_HAS_CONTACTS {
-        page.push_str("Cases of `direct` have no colliders: it has no contacts yet.\n\n");
-    }
     let _ = writeln!(
         page,
         "Seed {}, {:.2} hours on {}.\n",
