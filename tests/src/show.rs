@@ -13,7 +13,7 @@ use tressfx_render::{
     Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, Technique,
     ViewDraw,
 };
-use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams};
+use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, Solver};
 
 use crate::run_and_read;
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -39,6 +39,8 @@ pub struct Scene {
     pub motion: Motion,
     /// How stiff it is.
     pub params: SimParams,
+    /// What moves it.
+    pub solver: Solver,
     /// How it looks.
     pub material: Material,
     /// Where it is seen from, as a direction from its middle; `Vec3::Z` is its face.
@@ -62,6 +64,7 @@ impl Scene {
             capsules: Vec::new(),
             mesh: None,
             params: SimParams::default(),
+            solver: Solver::default(),
             material: Material::default(),
             from: Vec3::Z,
             distance: 1.0,
@@ -112,7 +115,7 @@ impl<B: Run> Show<B> {
     /// If the backend cannot make what the scene needs.
     pub fn new(mut backend: B, scene: &Scene) -> Self {
         let gpu: &mut dyn Run = &mut backend;
-        let desc = SectionDesc::new(&scene.strands, scene.params.clone());
+        let desc = SectionDesc::new(&scene.strands, scene.params.clone()).with_solver(scene.solver);
         let mut uploads = PassList::new();
         let sim = HairSim::new(gpu, &mut uploads, &[desc], scene.capsules.len()).expect("a simulation");
         let view = scene.view();

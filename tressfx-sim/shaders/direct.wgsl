@@ -21,6 +21,8 @@ import package::rod_contact::{Contacts, FAR, contacts_of, packed_direction, surf
 
 /// How stiff the spring is that holds a pinned tip, over the mass of the tip.
 const HOLD: f32 = 1e4;
+/// What holds an edge against a rotation about itself is never less than this share of all that holds it.
+const LEAST_TWIST: f32 = 1e-6;
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
 /// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
@@ -218,6 +220,9 @@ fn eliminate(strand: Strand, touches: bool) {
         let own = torque_of(joint, stiffness, past_strain(strand, edge, joint.strain));
         let spring = stiffness_of(joint, stiffness);
 
+        // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
+        let whole = turn + spring;
+        turn += LEAST_TWIST * (whole[0].x + whole[1].y + whole[2].z) * outer(axis, axis);
         let inverse = inverse_of(turn + spring);
         let by_parent = inverse * spring;
         let by_place = inverse * transpose(mixed);

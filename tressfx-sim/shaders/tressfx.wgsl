@@ -29,6 +29,9 @@ const LAG: u32 = LOCAL + 1u + 2u * LENGTHS;
 /// A vertex as it is stored: positions relative to the centre of the groom, and the inverse mass with the rest position.
 struct Stored { position: vec3<f32>, past: vec3<f32>, rest: vec4<f32> }
 
+/// Vertices that are loaded at once.
+struct Chunk { vertices: array<Stored, CHUNK> }
+
 /// Where a walk is. Vertices are relative to `origin`, the new place of the first one: small numbers have small rounding errors.
 struct Walk {
     origin: vec3<f32>,
@@ -69,7 +72,7 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         if (start + CHUNK < step.vertices) { ahead = loaded(strand, start + CHUNK); }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
-            if (t < step.vertices) { enter(&walk, &shaping, root, chunk[i], strand, t); }
+            if (t < step.vertices) { enter(&walk, &shaping, root, chunk.vertices[i], strand, t); }
             shaped(&shaping, t);
             let next = shaping.vertices[LOCAL];
             if (t > LOCAL) {
@@ -89,12 +92,12 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
 }
 
-fn loaded(strand: u32, start: u32) -> array<Stored, CHUNK> {
-    var chunk: array<Stored, CHUNK>;
+fn loaded(strand: u32, start: u32) -> Chunk {
+    var chunk: Chunk;
     for (var i = 0u; i < CHUNK; i++) {
         let vertex = min(start + i, step.vertices - 1u);
         let place = vertex * step.guides + strand;
-        chunk[i] = Stored(positions[vertex * step.strands + strand].xyz, previous[place].xyz, rest[place]);
+        chunk.vertices[i] = Stored(positions[vertex * step.strands + strand].xyz, previous[place].xyz, rest[place]);
     }
     return chunk;
 }

@@ -142,10 +142,13 @@ pub(crate) const FIRST: usize = 1;
 pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
 
 impl RodBuffers {
+    /// Of a vertex, in the buffer of the state.
+    pub(crate) const BYTES: u64 = 16 * 14;
+
     fn new(backend: &mut dyn Backend, vertices: u32) -> Result<Self> {
         Ok(Self {
             rest: storage(backend, "hair.rod_rest", 16 * 2, vertices)?,
-            state: storage(backend, "hair.rods", 16 * 14, vertices)?,
+            state: storage(backend, "hair.rods", Self::BYTES, vertices)?,
         })
     }
 }

@@ -1,5 +1,8 @@
 //! Which stages make a sub-step.
 
+use tressfx_core::strands::Strands;
+
+use crate::buffers::RodBuffers;
 use crate::stage::Stage;
 
 /// What solves the equations of motion of a section: it chooses the stages of a sub-step and their order.
@@ -19,6 +22,14 @@ pub enum Solver {
 impl Solver {
     /// The stage that a frame ends with, whatever the solver.
     pub const FRAME_END: Stage = Stage::Tangents;
+
+    /// Bytes of the largest buffer that the solver alone makes for a section: 0 of those that make none.
+    pub fn state_bytes(self, strands: &Strands) -> u64 {
+        match self {
+            Self::TressFx => 0,
+            Self::Direct => RodBuffers::BYTES * u64::from(strands.guides) * u64::from(strands.vertices),
+        }
+    }
 
     /// The stages of a sub-step, in order, and of a reset.
     pub fn stages(self) -> &'static [Stage] {

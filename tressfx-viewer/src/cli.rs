@@ -99,9 +99,9 @@ pub(crate) struct Scene {
     /// Follow strands of each guide; without it, what the file says, or more where a file has few strands
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
-    /// What solves the equations of motion
-    #[arg(long, value_enum, default_value_t = SolverName::Tressfx)]
-    pub(crate) solver: SolverName,
+    /// What solves the equations of motion; without it, rods (`direct`), and `tressfx` where the device has no room for rods
+    #[arg(long, value_enum)]
+    pub(crate) solver: Option<SolverName>,
     /// The backend that runs the passes
     #[arg(long, value_enum, default_value_t = BackendName::Wgpu)]
     pub(crate) backend: BackendName,
@@ -265,9 +265,9 @@ pub(crate) enum BackendName {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SolverName {
-    /// That of TressFX: constraints, one after the other
+    /// The published method of TressFX: constraints, one after the other; edges stretch
     Tressfx,
-    /// Rods with bending and twist, all edges of a strand at once; without contacts
+    /// Rods with bending and twist, all edges of a strand at once; edges keep their lengths
     Direct,
 }
 

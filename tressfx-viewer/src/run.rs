@@ -4,11 +4,12 @@ use anyhow::{Context, Result};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
+use tressfx_core::backend::Caps;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::metrics::{self, EdgeError};
-use tressfx_sim::{Collider, HairSim, SectionDesc, StepInput, Wind};
+use tressfx_sim::{Collider, HairSim, SectionDesc, Solver, StepInput, Wind};
 
 use crate::backend;
 use crate::cli::{self, BackendName};
@@ -37,6 +38,23 @@ pub(crate) struct Run {
     colliders: Vec<Collider<'static>>,
 }
 
+/// What moves a section: what was asked for, or rods where there is room for them. The rest pose alone asks for nothing, and what rods want
+/// at rest takes time.
+fn solver(args: &cli::Scene, strands: &Strands, caps: &Caps) -> Solver {
+    if let Some(name) = args.solver {
+        return name.solver();
+    }
+    let bytes = Solver::Direct.state_bytes(strands);
+    let has_room = bytes <= caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
+    if args.frames > 0 && !has_room {
+        eprintln!(
+            "{}: rods take {bytes} bytes in a buffer, more than this device has: the solver is `tressfx`",
+            strands.name
+        );
+    }
+    if args.frames > 0 && has_room { Solver::Direct } else { Solver::TressFx }
+}
+
 /// Says which strands were made stiffer so that they stand in the pose of their file.
 fn say_standing(sim: &HairSim, section: usize, strands: &Strands) {
     let Some(standing) = sim.standing(section) else { return };
@@ -62,7 +80,8 @@ impl Run {
             .iter()
             .enumerate()
             .map(|(index, strands)| {
-                SectionDesc::new(strands, params.sim(index).clone()).with_solver(args.solver.solver())
+                let solver = solver(args, strands, backend.caps());
+                SectionDesc::new(strands, params.sim(index).clone()).with_solver(solver)
             })
             .collect();
         let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());

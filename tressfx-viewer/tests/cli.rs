@@ -176,8 +176,9 @@ fn figures_have_their_keys_and_sensible_values() {
     assert_eq!((&stats["groom"]["strands"], &stats["groom"]["vertices"]), (&60.into(), &720.into()));
     assert_eq!((&stats["frames"], &stats["backend"]), (&8.into(), &"wgpu".into()));
     assert_eq!((&stats["sim"]["non_finite"], &stats["sim"]["resets"]), (&0.into(), &0.into()));
-    // Measured: 1.8e-7; rounding of positions, whatever the driver.
-    assert!(stats["sim"]["rms_edge_error"].as_f64().unwrap() < 2e-6);
+    // Edges stretch.
+    let stretched = stats["sim"]["rms_edge_error"].as_f64().unwrap();
+    assert!((1e-3..0.3).contains(&stretched), "{stretched}");
     assert!(stats["sim"]["max_edge_error"].is_number());
     assert_eq!(stats["render"]["dropped"], 0);
     for key in ["fragments", "pixels_with_hair", "peak_gpu_bytes", "oit_bytes"] {

@@ -110,7 +110,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "unshaded",
     ];
     // It is always written for capsules.
-    let all = names.into_iter().flat_map(both).chain([String::from("capsules true")]);
+    let all = names.into_iter().flat_map(both).chain(["capsules true", "contacts true"].map(String::from));
     assert_eq!(features, all.collect());
 }
 

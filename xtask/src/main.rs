@@ -10,7 +10,7 @@ mod validation;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
-       cargo xtask accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known]
+       | accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known]
        cargo xtask stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders

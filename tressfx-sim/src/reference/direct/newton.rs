@@ -10,6 +10,9 @@ const HOLD: f64 = 1e4;
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f64 = 1.5;
 
+/// What holds an edge against a rotation about itself is never less than this share of all that holds it.
+const LEAST_TWIST: f64 = 1e-6;
+
 /// What is left of an edge after the elimination: `turn = free + by_parent * turn of the parent - by_place * displacement of the
 /// vertex before it`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,6 +114,9 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     let own = joint.torque(&stiffness, motion.past_strains[edge]);
     let spring = joint.stiffness(&stiffness);
 
+    // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
+    let held = turn + spring;
+    turn += LEAST_TWIST * (held.x_axis.x + held.y_axis.y + held.z_axis.z) * outer(along, along);
     let inverse = (turn + spring).inverse();
     let by_parent = inverse * spring;
     let by_place = inverse * mixed.transpose();
