@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::case::SolverName;
 use crate::run::State;
-use crate::tally::{Spread, Tally};
+use crate::tally::{Spread, Tally, Worst};
 
 /// `stress.md`.
 pub fn page(state: &State) -> String {
@@ -78,7 +78,10 @@ fn spreads(state: &State) -> String {
             let below = |tally: &Tally| format!("{:.1} %", 100.0 * of(tally).below(decade));
             let _ = writeln!(table, "| below 1e{decade} |{}", columns(state, &below));
         }
-        let worst = |tally: &Tally| format!("{:.1e} (seed {})", of(tally).worst.value, of(tally).worst.seed);
+        let worst = |tally: &Tally| match of(tally).worst {
+            Worst { value: 0.0, .. } => String::from("0"),
+            Worst { value, seed } => format!("{value:.1e} (seed {seed})"),
+        };
         let _ = writeln!(table, "| the largest |{}", columns(state, &worst));
     }
     table + "\n"

@@ -20,7 +20,7 @@ use crate::verdict::{Failure, Trouble, Verdict};
 
 /// Of so many cases one is played on both backends.
 const COMPARED: u64 = 4;
-/// Failures of one kind that are made smaller; that takes longer than to find them.
+/// See [`Run::made_smaller`].
 const MADE_SMALLER: usize = 4;
 
 /// What is tried.
@@ -105,6 +105,8 @@ pub struct Run {
     pub state: State,
     gpus: Vec<Gpu>,
     path: Option<PathBuf>,
+    /// Failures of one kind that are made smaller; that takes longer than to find them.
+    made_smaller: usize,
 }
 
 impl Run {
@@ -115,7 +117,13 @@ impl Run {
     pub fn new(mut state: State, path: Option<PathBuf>) -> Result<Self> {
         let gpus = state.settings.backends.iter().map(|&name| Gpu::open(name)).collect::<Result<Vec<_>>>()?;
         state.devices = gpus.iter().map(|gpu| format!("{} ({})", gpu.name.name(), gpu.device())).collect();
-        Ok(Self { state, gpus, path })
+        Ok(Self { state, gpus, path, made_smaller: MADE_SMALLER })
+    }
+
+    /// The same, but what fails is kept as it is.
+    #[must_use]
+    pub fn as_they_are(self) -> Self {
+        Self { made_smaller: 0, ..self }
     }
 
     /// Draws what is missing of the map.
@@ -199,7 +207,7 @@ impl Run {
     fn fail(&mut self, bar: &ProgressBar, gpu: usize, failure: Failure) -> Result<()> {
         bar.suspend(|| eprintln!("{failure}"));
         let same = |kept: &&Failure| (kept.solver, kept.trouble.kind()) == (failure.solver, failure.trouble.kind());
-        if self.state.failures.iter().filter(same).count() >= MADE_SMALLER {
+        if self.state.failures.iter().filter(same).count() >= self.made_smaller {
             self.state.failures.push(failure);
             return Ok(());
         }

@@ -6,13 +6,13 @@ use tressfx_stress::kept::kept;
 use tressfx_stress::run::{Run, Settings, State};
 
 /// Cases of each solver.
-const CASES: u64 = 20;
+const CASES: u64 = 12;
 
 fn short(solver: SolverName) {
     let backends = vec![BackendName::Wgpu, BackendName::Vulkan];
     let state = State::new(Settings { seed: 2, solvers: vec![solver], backends });
     let mut run = match Run::new(state, None) {
-        Ok(run) => run,
+        Ok(run) => run.as_they_are(),
         Err(error) if std::env::var_os("TRESSFX_NO_GPU").is_some() => {
             eprintln!("skipped: {error}");
             return;

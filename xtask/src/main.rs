@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
        | accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known]
-       | stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
+       cargo xtask stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
 
   demo   installs a software Vulkan where there is no driver, builds in release, simulates and renders
          the built-in grooms into out/demo, and says where the pictures are
