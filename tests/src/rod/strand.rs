@@ -16,22 +16,9 @@ pub fn line(vertices: usize, direction: DVec3) -> RodRest {
 
 /// A sub-step of hair of this bending length in metres, in still air that does not hold it.
 pub fn step(length: f64, bending_length: f64) -> RodStep<'static> {
-    RodStep {
-        length,
-        gravity: DVec3::new(0.0, -G, 0.0),
-        wind: DVec3::ZERO,
-        drag: [0.0; 2],
-        pull: 0.0,
-        bending: G * bending_length.powi(3),
-        twist_ratio: 0.77,
-        damping: 0.0,
-        root: DQuat::IDENTITY,
-        root_displacement: DVec3::ZERO,
-        tip: None,
-        obstacles: &[],
-        friction: 0.0,
-        rounds: 2,
-    }
+    let gravity = DVec3::new(0.0, -G, 0.0);
+    let bending = G * bending_length.powi(3);
+    RodStep { length, gravity, bending, twist_ratio: 0.77, ..RodStep::default() }
 }
 
 /// So many seconds.
