@@ -2,29 +2,23 @@
 // Newton's method with elimination from the tip to the root and back. One thread a guide. Forces are per mass of unit length, and
 // times the square of the sub-step.
 
+import package::eliminate::{Begin, eliminate, hold_place, hold_stiffness};
 import package::grid::{GROUP, thread_index};
-import package::joint::{Stiffness, joint_between, outer, scaled_identity, stiffness_of, torque_of};
+import package::joint::joint_between;
 import package::rod::{
-    BY_PARENT, BY_PLACE, FRAME, LAST_STRAIN, LAST_VELOCITY, MOVED, MOVING, NOW, STRAIN, Strand, VELOCITY, along, frame_at_rest,
-    half_turn, length_of, positions, rest, rods, slot, strand_of,
+    BEGIN, GUESS, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, frame_slot, half_turn,
+    moved_slot, packed_marks, positions, rest, rest_before, rods, slot, strand_of,
 };
 import package::root::shape_of;
 import package::step::step;
-import package::vector::{after, direction_or, is_finite, turned};
+import package::substitute::{Round, Start, aim, aim_again, substitute};
+import package::vector::is_finite;
 @if(contacts)
-import package::rod::{edge_of, last_touch};
-@if(contacts)
-import package::rod_contact::{Contacts, FAR, contacts_of, packed_direction, surface_bound};
+import package::rod_touch::{Range, note_touches, surface_way};
 
 /// Strands that were reset because they had become non-finite.
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
 
-/// How stiff the spring is that holds a pinned tip, over the mass of the tip.
-const HOLD: f32 = 1e4;
-/// What holds an edge against a rotation about itself is never less than this share of all that holds it.
-const LEAST_TWIST: f32 = 1e-6;
-/// The longest rotation of an edge in a round, rad.
-const LONGEST_TURN: f32 = 1.5;
 /// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
 const TOO_FAST: f32 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
@@ -38,9 +32,6 @@ const TOUCHING_ROUNDS: u32 = 4u;
 const MOST_ROUNDS: u32 = 8u;
 const SETTLED: f32 = 1e-5;
 
-/// Whether any edge of a strand touches a capsule, and whether one is deep inside.
-struct Touched { any: bool, deep: bool }
-
 @compute @workgroup_size(GROUP)
 fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
           @builtin(local_invocation_index) lane: u32) {
@@ -51,19 +42,11 @@ fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
         rest_again(strand);
         return;
     }
-    aim(strand);
-    var touched = touched_of(strand);
-    var turn = 0.0;
-    for (var round = 1u; round <= MOST_ROUNDS; round++) {
-        eliminate(strand, touched.any);
-        turn = substitute(strand);
-        touched = touched_of(strand);
-        let calm = turn < ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0);
-        let least = select(1u, TOUCHING_ROUNDS, touched.any && turn >= SETTLED);
-        if (round >= least && (calm || round >= step.rounds) && !(touched.deep && turn >= SETTLED)) { break; }
-    }
-    let is_new = note_touches(strand, touched.any);
-    if (!finish(strand, turn < TOO_FAST && !is_new)) {
+    let start = carry_held(strand);
+    let round = rounds(strand, start);
+    if (round.finite) {
+        finish(strand, round);
+    } else {
         rest_again(strand);
         atomicAdd(&non_finite, 1u);
     }
@@ -74,369 +57,128 @@ fn rest_again(strand: Strand) {
     for (var i = 0u; i < step.vertices; i++) {
         let vertex = rest[i * step.guides + strand.guide];
         positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
-        for (var j = FRAME; j < NOW; j++) { rods[slot(strand, i, j)] = vec4(0.0); }
-        if (i < strand.edges) { rods[slot(strand, i, FRAME)] = frame_at_rest(strand, i); }
+        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0, 0.0, 0.0, vertex.w); }
+        if (i > 0u) {
+            let frame = frame_at_rest(strand, i);
+            rods[frame_slot(strand, i, 0u)] = frame;
+            rods[slot(strand, i, GUESS)] = frame;
+        }
     }
+    rods[slot(strand, 0u, BEGIN)] = vec4(0.0, 0.0, 0.0, packed_marks(Marks(strand.turn, false, false, false)));
+    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, step.length, f32(step.vertices), 0.0);
+    rods[slot(strand, 0u, HOLDING)] = vec4(0.0);
     store_strains(strand, false);
+}
+
+/// Moves what the root holds: itself and the vertices after it that are pinned as well.
+fn carry_held(strand: Strand) -> Start {
+    var start: Start;
+    start.moving = strand.root_moved;
+    start.parent = strand.root.rotation;
+    @if(contacts) {
+        start.surface = surface_way(strand);
+    }
+    let mass = rods[moved_slot(strand, 0u, 1u)].w;
+    rods[moved_slot(strand, 0u, 0u)] = vec4(start.moving, mass);
+    positions[strand.guide] = vec4(strand.root_now, mass);
+    for (var vertex = 1u; vertex <= strand.held; vertex++) {
+        let length = rest_before(strand, vertex).w;
+        start.parent = frame_at_rest(strand, vertex);
+        let axis = along(start.parent);
+        start.moving += length * (axis - along(rods[frame_slot(strand, vertex, 1u)]));
+        start.place += length * axis;
+        let mass = rods[moved_slot(strand, vertex, 1u)].w;
+        rods[moved_slot(strand, vertex, 0u)] = vec4(start.moving, mass);
+        rods[frame_slot(strand, vertex, 0u)] = start.parent;
+        positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + start.place, mass);
+    }
+    return start;
+}
+
+/// What the first round begins with. Of the guess only the first free edge asks where the root is.
+fn first_begin(strand: Strand, start: Start) -> Begin {
+    let vertex = strand.held + 1u;
+    let frame = rods[frame_slot(strand, vertex, 1u)];
+    let moved = rods[moved_slot(strand, vertex, 1u)].xyz;
+    let before = rods[moved_slot(strand, vertex, 2u)].xyz;
+    let length = rest_before(strand, vertex).w;
+    let guess = aim(frame, length, strand.speed.x * moved + strand.speed.y * before - start.moving);
+    rods[slot(strand, vertex, GUESS)] = guess;
+    var begin: Begin;
+    begin.is_first_round = true;
+    begin.parent = start.parent;
+    begin.moving = start.moving + length * (along(guess) - along(frame)) + rods[slot(strand, 0u, BEGIN)].xyz;
+    let tip = positions[strand.edges * step.strands + strand.guide].xyz;
+    begin.place = tip - step.center_displacement + begin.moving - strand.root_now;
+    @if(contacts) {
+        begin.near = Range(vertex, strand.edges);
+        begin.surface = start.surface;
+    }
+    return begin;
+}
+
+/// All rounds of a sub-step; gives what the last one has come to.
+fn rounds(strand: Strand, start: Start) -> Round {
+    let calm = ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0);
+    var begin = first_begin(strand, start);
+    var round: Round;
+    for (var count = 1u; count <= MOST_ROUNDS; count++) {
+        eliminate(strand, begin);
+        let limit = select(1e9, calm, count < step.rounds);
+        round = substitute(strand, start, begin.is_first_round, limit);
+        var goes_on = round.longest > limit;
+        @if(contacts) {
+            let touching = round.found.touching && round.longest >= SETTLED;
+            goes_on = goes_on || (touching && (count < TOUCHING_ROUNDS || round.found.deep));
+            begin.near = round.found.near;
+        }
+        if (!goes_on) { break; }
+        begin.is_first_round = false;
+        begin.moving = round.moving;
+        begin.place = round.place;
+    }
+    return round;
+}
+
+/// Stores the state of the strand that the next sub-step begins with.
+fn finish(strand: Strand, round: Round) {
+    var calm = round.longest < TOO_FAST;
+    var near = vec2(f32(step.vertices), 0.0);
+    @if(contacts) {
+        let is_new = note_touches(strand, round.found.near);
+        calm = calm && !is_new;
+        near = vec2(f32(round.found.near.first), f32(round.found.near.last));
+    }
+    var aimed = round.aimed;
+    if (!calm && strand.has_past) { aimed = aim_again(strand); }
+    keep_hold(strand, round.place);
+    store_strains(strand, true);
+    let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);
+    let last_length = rods[slot(strand, 0u, LENGTHS)].x;
+    rods[slot(strand, 0u, BEGIN)] = vec4(aimed, packed_marks(marks));
+    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, last_length, near);
 }
 
 /// Stores the strains of all joints; the ones before them are kept, or are the same.
 fn store_strains(strand: Strand, keep: bool) {
     @if(internal_damping) {
         var parent = strand.root.rotation;
-        for (var edge = 0u; edge < strand.edges; edge++) {
-            let frame = rods[slot(strand, edge, FRAME)];
-            let strain = vec4(joint_between(parent, half_turn(strand, edge), frame).strain, 0.0);
-            rods[slot(strand, edge, LAST_STRAIN)] = select(strain, rods[slot(strand, edge, STRAIN)], keep);
-            rods[slot(strand, edge, STRAIN)] = strain;
+        for (var vertex = 1u; vertex < step.vertices; vertex++) {
+            let frame = rods[frame_slot(strand, vertex, 0u)];
+            let last = rods[slot(strand, vertex, STRAIN)];
+            let strain = joint_between(parent, half_turn(rest_before(strand, vertex)), frame).strain;
+            rods[slot(strand, vertex, LAST_STRAIN)] = vec4(select(strain, last.xyz, keep), 0.0);
+            rods[slot(strand, vertex, STRAIN)] = vec4(strain, last.w);
             parent = frame;
         }
     }
 }
 
-/// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
-/// velocities.
-fn aim(strand: Strand) {
-    var moving = strand.root_moved;
-    var begin = step.length * rods[slot(strand, 0u, VELOCITY)].xyz;
-    rods[slot(strand, 0u, MOVING)] = vec4(moving, 0.0);
-    for (var edge = 0u; edge < strand.edges; edge++) {
-        let length = length_of(strand, edge);
-        let frame = rods[slot(strand, edge, FRAME)];
-        let here = along(frame);
-        let to = step.length * rods[slot(strand, edge + 1u, VELOCITY)].xyz;
-        var now = frame_at_rest(strand, edge);
-        if (edge >= strand.held) {
-            let start = select(begin, moving, edge == strand.held);
-            now = turned(frame, here, direction_or(length * here + to - start, here));
-        }
-        // From two directions, not from two places, which would lose more.
-        moving += length * (along(now) - here);
-        begin = to;
-        rods[slot(strand, edge, NOW)] = now;
-        rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
-    }
-}
-
-/// A vertex: where the past says that it would be without forces, and with gravity alone, from where it is.
-struct Pulled { place: vec3<f32>, free: vec3<f32> }
-
-fn pulled(strand: Strand, vertex: u32, moving: vec3<f32>) -> Pulled {
-    let velocity = rods[slot(strand, vertex, VELOCITY)].xyz;
-    var place = -moving;
-    var kept = velocity;
-    if (strand.has_past) {
-        place += rods[slot(strand, vertex, MOVED)].xyz / 3.0;
-        kept = (4.0 * velocity - rods[slot(strand, vertex, LAST_VELOCITY)].xyz) / 3.0;
-    }
-    return Pulled(place, place + strand.length * kept + strand.fall);
-}
-
-/// The mass of a vertex with what acts on it in proportion to its place, and the force.
-struct Inertia { mass: mat3x3<f32>, force: vec3<f32> }
-
-fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, moving: vec3<f32>, axis: vec3<f32>) -> Inertia {
-    let drag = scaled_identity(strand.length * step.drag_across)
-        + strand.length * (step.drag_along - step.drag_across) * outer(axis, axis);
-    var force = pulled.free + drag * (pulled.place + strand.length * strand.wind);
-    var held = 1.0;
-    @if(pull) {
-        let pull = strand.length * strand.length * step.pull;
-        let then = positions[vertex * step.strands + strand.guide].xyz;
-        let goal = shape_of(strand.root, rest[vertex * step.guides + strand.guide].xyz);
-        force += pull * (goal - then + step.center_displacement - moving);
-        held += pull;
-    }
-    return Inertia(mass * (scaled_identity(held) + drag), mass * force);
-}
-
-/// From the tip to the root: takes each edge out of the system, and gives the vertex before it and its parent what the edge and all
-/// beyond want of them. That is half of a quadratic function of the displacement of a vertex and of the rotation of the edge before it.
-fn eliminate(strand: Strand, touches: bool) {
-    let tip = strand.edges;
-    var length = length_of(strand, tip - 1u);
-    var frame = rods[slot(strand, tip - 1u, NOW)];
-    var axis = along(frame);
-    var moving = rods[slot(strand, tip, MOVING)].xyz;
-    var after_edge = pulled(strand, tip, moving);
-    let last = inertia(strand, tip, 0.5 * length, after_edge, moving, axis);
-    let spring = hold_stiffness(strand);
-    let hold = rods[slot(strand, tip, FRAME)].xyz;
-    let gap = hold_place(strand) - positions[tip * step.strands + strand.guide].xyz + step.center_displacement - moving;
-    var place = last.mass + scaled_identity(spring);
-    var mixed = scaled_identity(0.0);
-    var turn = scaled_identity(0.0);
-    var force = last.force + hold + spring * gap;
-    var torque = vec3(0.0);
-    // The force that the tip has come to is held with, not that of the spring, which changes its sign from round to round.
-    var pull = last.force + hold;
-    // Of the edge after the one at hand, which has half of the mass between them.
-    var length_after = 0.0;
-    for (var edge = tip; edge > strand.held; ) {
-        edge--;
-        var length_before = 0.0;
-        var parent = strand.root.rotation;
-        var direction = axis;
-        if (edge > 0u) {
-            length_before = length_of(strand, edge - 1u);
-            parent = rods[slot(strand, edge - 1u, NOW)];
-            direction = along(parent);
-        }
-        let end_moving = moving;
-        moving = rods[slot(strand, edge, MOVING)].xyz;
-        let before_edge = pulled(strand, edge, moving);
-
-        // The vertex after the edge moves by the one before it and `arm * rotation`.
-        let arm = -length * cross_matrix(axis);
-        let back = transpose(arm);
-        let across = scaled_identity(1.0) - outer(axis, axis);
-        let half = back * mixed;
-        turn += half + transpose(half) + back * place * arm;
-        torque += back * force;
-        mixed += place * arm;
-        @if(contacts) {
-            if (touches) {
-                let mass = 0.5 * (length + length_after);
-                let contacts = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last_touch(strand, edge), mass);
-                turn += back * contacts.turn * arm;
-                torque += back * contacts.torque;
-                mixed += contacts.mixed * arm;
-                place += contacts.place;
-                force += contacts.force;
-                pull += contacts.pull;
-            }
-            length_after = length;
-        }
-        // Tension pulls an edge straight; pressure would let it fall, and is left out.
-        let correction = strand.mass_correction * length;
-        turn += (length * max(dot(axis, pull), 0.0) - correction * length * length) * across;
-        torque -= correction * (back * (after_edge.free - before_edge.free));
-
-        let joined = select(0.0, length_before, edge > strand.held);
-        let span = max(0.5 * (joined + length), strand.shortest_span);
-        let joint = joint_between(parent, half_turn(strand, edge), frame);
-        let bending = strand.bending / span * strand.length * strand.length;
-        let stiffness = Stiffness(bending, step.twist_ratio, step.internal_damping / strand.length);
-        let own = torque_of(joint, stiffness, past_strain(strand, edge, joint.strain));
-        let spring = stiffness_of(joint, stiffness);
-
-        // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
-        let whole = turn + spring;
-        turn += LEAST_TWIST * (whole[0].x + whole[1].y + whole[2].z) * outer(axis, axis);
-        let inverse = inverse_of(turn + spring);
-        let by_parent = inverse * spring;
-        let by_place = inverse * transpose(mixed);
-        let free = inverse * (torque + own);
-        store(strand, edge, free, by_parent, by_place);
-
-        let mass = 0.5 * (length_before + length);
-        let vertex_axis = direction_or(axis + direction, axis);
-        let vertex = inertia(strand, edge, mass, before_edge, moving, vertex_axis);
-        place = symmetric(place - mixed * by_place) + vertex.mass;
-        force += vertex.force - mixed * free;
-        // Equal to `spring * free - own`, without the difference of two large numbers.
-        torque = transpose(by_parent) * torque - turn * (inverse * own);
-        mixed = mixed * by_parent;
-        turn = symmetric(turn * by_parent);
-        pull += vertex.force;
-
-        after_edge = before_edge;
-        frame = parent;
-        axis = direction;
-        length = length_before;
-    }
-}
-
-/// What the past says of a strain.
-fn past_strain(strand: Strand, edge: u32, strain: vec3<f32>) -> vec3<f32> {
-    @if(!internal_damping) { return strain; }
-    @if(internal_damping) {
-        let last = rods[slot(strand, edge, STRAIN)].xyz;
-        let before = rods[slot(strand, edge, LAST_STRAIN)].xyz;
-        return select(last, (4.0 * last - before) / 3.0, strand.has_past);
-    }
-}
-
-fn store(strand: Strand, edge: u32, free: vec3<f32>, by_parent: mat3x3<f32>, by_place: mat3x3<f32>) {
-    rods[slot(strand, edge, BY_PARENT)] = vec4(by_parent[0], free.x);
-    rods[slot(strand, edge, BY_PARENT + 1u)] = vec4(by_parent[1], free.y);
-    rods[slot(strand, edge, BY_PARENT + 2u)] = vec4(by_parent[2], free.z);
-    rods[slot(strand, edge, BY_PLACE)] = vec4(by_place[0], 0.0);
-    rods[slot(strand, edge, BY_PLACE + 1u)] = vec4(by_place[1], 0.0);
-    rods[slot(strand, edge, BY_PLACE + 2u)] = vec4(by_place[2], 0.0);
-}
-
-/// From the root to the tip: turns each edge. Gives the longest rotation, rad.
-fn substitute(strand: Strand) -> f32 {
-    var shift = vec3(0.0);
-    var parent = vec3(0.0);
-    var moving = rods[slot(strand, strand.held, MOVING)].xyz;
-    var longest = 0.0;
-    for (var edge = strand.held; edge < strand.edges; edge++) {
-        let length = length_of(strand, edge);
-        let first = rods[slot(strand, edge, BY_PARENT)];
-        let second = rods[slot(strand, edge, BY_PARENT + 1u)];
-        let third = rods[slot(strand, edge, BY_PARENT + 2u)];
-        let by_place = mat3x3(
-            rods[slot(strand, edge, BY_PLACE)].xyz,
-            rods[slot(strand, edge, BY_PLACE + 1u)].xyz,
-            rods[slot(strand, edge, BY_PLACE + 2u)].xyz,
-        );
-        let free = vec3(first.w, second.w, third.w);
-        var rotation = free + mat3x3(first.xyz, second.xyz, third.xyz) * parent - by_place * shift;
-        let size = sqrt(dot(rotation, rotation));
-        rotation *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
-        longest = max(longest, min(size, LONGEST_TURN));
-        let frame = rods[slot(strand, edge, NOW)];
-        let now = normalize(after(rotation_by(rotation), frame));
-        shift += length * cross(rotation, along(frame));
-        moving += length * (along(now) - along(rods[slot(strand, edge, FRAME)]));
-        rods[slot(strand, edge, NOW)] = now;
-        rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
-        parent = rotation;
-    }
-    return longest;
-}
-
-/// Whether a strand touches anything, as far as it has got. Where the nearest capsule is some way off, the edges from there on need no
-/// test for as long.
-fn touched_of(strand: Strand) -> Touched {
-    var touched = Touched(false, false);
-    @if(contacts) {
-        if (step.first_capsule == step.end_capsule) { return touched; }
-        var furthest = 0.0;
-        var reach = 0.0;
-        for (var i = strand.held; i <= strand.edges; i++) {
-            let moving = rods[slot(strand, i, MOVING)].xyz;
-            furthest = max(furthest, dot(moving, moving));
-            if (i < strand.edges) { reach += length_of(strand, i); }
-        }
-        furthest = sqrt(furthest) + surface_bound(positions[strand.guide].xyz, reach);
-        var free = 0.0;
-        var moving = rods[slot(strand, strand.held, MOVING)].xyz;
-        for (var edge = strand.held; edge < strand.edges; edge++) {
-            let end_moving = rods[slot(strand, edge + 1u, MOVING)].xyz;
-            free -= length_of(strand, edge);
-            if (free <= 0.0) {
-                let contacts = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last_touch(strand, edge), 1.0);
-                touched.any = touched.any || contacts.touch.obstacle > 0u;
-                touched.deep = touched.deep || contacts.touch.is_deep;
-                free = contacts.clearance - furthest;
-            }
-            moving = end_moving;
-        }
-    }
-    return touched;
-}
-
-/// Notes what each edge touches, in place of what the elimination has left, and says whether any of it is new.
-fn note_touches(strand: Strand, touches: bool) -> bool {
-    var is_new = false;
-    @if(contacts) {
-        for (var edge = 0u; edge < strand.edges; edge++) {
-            var stretch = vec4(0.0);
-            var obstacle = 0u;
-            if (touches && edge >= strand.held) {
-                let moving = rods[slot(strand, edge, MOVING)].xyz;
-                let end_moving = rods[slot(strand, edge + 1u, MOVING)].xyz;
-                let last = last_touch(strand, edge);
-                let touch = contacts_of(strand.root_now, edge_of(strand, edge, moving, end_moving), last, 1.0).touch;
-                obstacle = touch.obstacle;
-                if (obstacle > 0u) { stretch = vec4(touch.stretch, packed_direction(touch.normal)); }
-                is_new = is_new || (obstacle > 0u && obstacle != last.obstacle);
-            }
-            rods[slot(strand, edge, BY_PLACE)] = stretch;
-            rods[slot(strand, edge, BY_PLACE + 1u)] = vec4(f32(obstacle), 0.0, 0.0, 0.0);
-        }
-    }
-    return is_new;
-}
-
-/// Keeps what the edge before a vertex touches; zeros of a strand that touches nothing.
-fn keep_touch(strand: Strand, vertex: u32) {
-    @if(contacts) {
-        let stretch = rods[slot(strand, vertex - 1u, BY_PLACE)];
-        rods[slot(strand, vertex, MOVED)].w = stretch.x;
-        rods[slot(strand, vertex, VELOCITY)].w = stretch.y;
-        rods[slot(strand, vertex, LAST_VELOCITY)].w = stretch.z;
-        rods[slot(strand, vertex, STRAIN)].w = stretch.w;
-        rods[slot(strand, vertex, LAST_STRAIN)].w = rods[slot(strand, vertex - 1u, BY_PLACE + 1u)].x;
-    }
-}
-
-/// Stores the state that the next sub-step begins with, and the positions. Says whether they are finite.
-fn finish(strand: Strand, calm: bool) -> bool {
-    var place = strand.root_now;
-    var finite = true;
-    for (var i = 0u; i < step.vertices; i++) {
-        let moving = rods[slot(strand, i, MOVING)].xyz;
-        var velocity = moving / step.length;
-        if (calm) {
-            var past = vec3(0.0);
-            if (strand.has_past) { past = rods[slot(strand, i, MOVED)].xyz / 3.0; }
-            velocity = (moving - past) / strand.length;
-        }
-        rods[slot(strand, i, LAST_VELOCITY)] = vec4(rods[slot(strand, i, VELOCITY)].xyz, 0.0);
-        rods[slot(strand, i, VELOCITY)] = vec4(velocity, select(0.0, 1.0, calm));
-        rods[slot(strand, i, MOVED)] = vec4(moving, 0.0);
-        let then = positions[i * step.strands + strand.guide];
-        if (i == strand.edges) { keep_hold(strand, then.xyz - step.center_displacement + moving); }
-        positions[i * step.strands + strand.guide] = vec4(place, then.w);
-        finite = finite && is_finite(place) && is_finite(velocity);
-        if (i < strand.edges) {
-            let now = rods[slot(strand, i, NOW)];
-            rods[slot(strand, i, FRAME)] = now;
-            place += length_of(strand, i) * along(now);
-        }
-    }
-    store_strains(strand, true);
-    for (var i = 1u; i < step.vertices; i++) { keep_touch(strand, i); }
-    return finite;
-}
-
-/// The stiffness of the spring that holds a pinned tip; 0 where the tip is free.
-fn hold_stiffness(strand: Strand) -> f32 {
-    @if(!pinned_tips) { return 0.0; }
-    @if(pinned_tips) { return strand.tip_pinned * HOLD * 0.5 * length_of(strand, strand.edges - 1u); }
-}
-
-/// Where a pinned tip is held.
-fn hold_place(strand: Strand) -> vec3<f32> {
-    return shape_of(strand.root, rest[strand.edges * step.guides + strand.guide].xyz);
-}
-
-/// The force that a pinned tip has come to takes up what the spring leaves.
+/// The force that a pinned tip has come to takes up what the spring leaves; `place` is from the root.
 fn keep_hold(strand: Strand, place: vec3<f32>) {
     @if(pinned_tips) {
-        let more = hold_stiffness(strand) * (hold_place(strand) - place);
-        rods[slot(strand, strand.edges, FRAME)] += vec4(more, 0.0);
+        let length = rest_before(strand, strand.edges).w;
+        let more = hold_stiffness(strand, length) * (hold_place(strand) - strand.root_now - place);
+        rods[slot(strand, 0u, HOLDING)] += vec4(more, 0.0);
     }
-}
-
-/// The rotation by an angle about an axis, given as their product.
-fn rotation_by(v: vec3<f32>) -> vec4<f32> {
-    let angle = sqrt(dot(v, v));
-    // sin(x / 2) / x and its limit.
-    let share = select(0.5, sin(0.5 * angle) / angle, angle > 1e-3);
-    return vec4(share * v, cos(0.5 * angle));
-}
-
-/// The matrix of `v x`.
-fn cross_matrix(v: vec3<f32>) -> mat3x3<f32> {
-    return mat3x3(vec3(0.0, v.z, -v.y), vec3(-v.z, 0.0, v.x), vec3(v.y, -v.x, 0.0));
-}
-
-fn symmetric(m: mat3x3<f32>) -> mat3x3<f32> {
-    return 0.5 * (m + transpose(m));
-}
-
-/// The inverse of a symmetric matrix. Its trace is taken out first: of the shortest strands the determinant alone would be 0 in f32.
-fn inverse_of(m: mat3x3<f32>) -> mat3x3<f32> {
-    let size = 1.0 / (m[0].x + m[1].y + m[2].z);
-    let a = size * m[0];
-    let b = size * m[1];
-    let c = size * m[2];
-    let first = cross(b, c);
-    let share = size / dot(a, first);
-    return mat3x3(share * first, share * cross(c, a), share * cross(a, b));
 }

@@ -1,5 +1,6 @@
 // The joint between two edges of a rod: how far it is bent and twisted, and the torque of that.
 
+import package::symmetric::{Symmetric, outer, scaled_identity, sum};
 import package::vector::{after, rotate};
 
 /// A strain that changes by more than this within a sub-step has no rate: the joint has flipped over.
@@ -47,17 +48,35 @@ fn torque_of(joint: Joint, stiffness: Stiffness, past: vec3<f32>) -> vec3<f32> {
 }
 
 /// What stands for the derivative of the torque by a rotation between the edges: exact for small strains, too stiff for large ones.
-fn stiffness_of(joint: Joint, stiffness: Stiffness) -> mat3x3<f32> {
-    let axis = rotate(joint.middle, vec3(0.0, 0.0, 1.0));
+/// It is `bending` times a rotation across the axis, and `bending * twist_ratio` times one about it.
+struct Spring { bending: f32, twist_ratio: f32, axis: vec3<f32> }
+
+fn spring_of(joint: Joint, stiffness: Stiffness) -> Spring {
     let stiffer = 0.5 * slope(joint.turn.w);
     let bending = stiffer * stiffer * stiffer * (1.0 + stiffness.lag) * stiffness.bending;
-    return scaled_identity(bending) + bending * (stiffness.twist_ratio - 1.0) * outer(axis, axis);
+    return Spring(bending, stiffness.twist_ratio, twist_axis(joint.middle));
 }
 
-fn outer(a: vec3<f32>, b: vec3<f32>) -> mat3x3<f32> {
-    return mat3x3(a * b.x, a * b.y, a * b.z);
+fn twist_axis(middle: vec4<f32>) -> vec3<f32> {
+    return rotate(middle, vec3(0.0, 0.0, 1.0));
 }
 
-fn scaled_identity(scale: f32) -> mat3x3<f32> {
-    return mat3x3(vec3(scale, 0.0, 0.0), vec3(0.0, scale, 0.0), vec3(0.0, 0.0, scale));
+fn torque_by(spring: Spring, turn: vec3<f32>) -> vec3<f32> {
+    return spring.bending * (turn + (spring.twist_ratio - 1.0) * dot(spring.axis, turn) * spring.axis);
+}
+
+fn stiffness_of(spring: Spring) -> Symmetric {
+    let twist = outer(spring.bending * (spring.twist_ratio - 1.0), spring.axis);
+    return sum(scaled_identity(spring.bending), twist);
+}
+
+/// A matrix times the stiffness.
+fn by_spring(m: mat3x3<f32>, spring: Spring) -> mat3x3<f32> {
+    let twist = (spring.twist_ratio - 1.0) * (m * spring.axis);
+    let t = spring.axis;
+    return mat3x3(
+        spring.bending * (m[0] + t.x * twist),
+        spring.bending * (m[1] + t.y * twist),
+        spring.bending * (m[2] + t.z * twist),
+    );
 }

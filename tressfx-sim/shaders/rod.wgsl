@@ -1,42 +1,53 @@
 // The rods of a section in buffers: their rest, their state, and what the sweeps of a sub-step leave for each other.
 
+import package::grid::GROUP;
 import package::root::{Root, root_of, shape_of};
 import package::step::step;
 import package::vector::{after, rotate};
 import package::wind::wind_of;
-@if(contacts)
-import package::rod_contact::{Edge, Touch, nothing_touched, unpacked_direction};
 
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
-/// Two for each vertex: half of the rotation that the joint before its edge wants, the fourth component of which follows from the
-/// others and gives way to the length of the edge; and the frame of the edge at rest. The tip has no edge; its first has what the strand's
-/// bending is multiplied by, how many edges the root holds, the shortest length that bends, and 1 if the tip is pinned.
+/// Two for each vertex: half of the rotation that the joint before the edge to the next one wants, the fourth component of which
+/// follows from the others and gives way to the length of the edge; and the frame of that edge at rest. The tip has no such edge; its first
+/// has what the strand's bending is multiplied by, how many edges the root holds, the shortest length that bends, and 1 if the tip is
+/// pinned, its second the length of the strand.
 @group(0) @binding(2) var<storage, read> rod_rest: array<vec4<f32>>;
-/// `SLOTS` for each vertex: the state, and from `NOW` on what the sweeps leave for each other.
+/// `SLOTS` for each vertex: what belongs to it and to the edge before it. The strands of a group are beside each other.
 @group(0) @binding(3) var<storage, read_write> rods: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
-const SLOTS: u32 = 14u;
-/// The frame of the edge, at the tip the force that holds it; what the vertex moved by in the last sub-step; its velocity, and at the root
-/// whether the past counts; its velocity before; the strain of the joint, and before. The fourth components of the others have what the edge
-/// before the vertex touches: how far friction is stretched, the side that it is on, and the capsule.
-const FRAME: u32 = 0u;
-const MOVED: u32 = 1u;
-const VELOCITY: u32 = 2u;
-const LAST_VELOCITY: u32 = 3u;
-const STRAIN: u32 = 4u;
-const LAST_STRAIN: u32 = 5u;
-/// The frame of the edge and what the vertex has moved by in this sub-step, as far as they are known; what is left of the edge
-/// after the elimination: by the columns of two matrices what of its rotation its parent's rotation and the displacement of the vertex before
-/// it make, and in the fourth components of the first its rotation without them.
-const NOW: u32 = 6u;
-const MOVING: u32 = 7u;
-const BY_PARENT: u32 = 8u;
-const BY_PLACE: u32 = 11u;
+const SLOTS: u32 = 15u;
+/// What the vertex moved by in each of the last sub-steps, in turns, and its inverse mass.
+const MOVED: u32 = 0u;
+const MOVES: u32 = 4u;
+/// The frame of the edge in the last two sub-steps, in turns,
+const FRAME: u32 = 4u;
+const FRAMES: u32 = 2u;
+/// and the one that the next sub-step begins with; see `aim`.
+const GUESS: u32 = 6u;
+/// What the elimination leaves of the edge: see `Left`.
+const LEFT: u32 = 7u;
+/// The strain of the joint before the edge and what the edge touches, and the strain before.
+const STRAIN: u32 = 12u;
+const LAST_STRAIN: u32 = 13u;
+/// How far the friction of the edge is stretched, and the side that it touches.
+const TOUCH: u32 = 14u;
+
+/// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved where the edges behind
+/// the first free one take their guesses, and `Marks`;
+const BEGIN: u32 = GUESS;
+/// the lengths of the last two sub-steps, and the first and the last vertex behind an edge that was near a capsule;
+const LENGTHS: u32 = TOUCH;
+/// the force that holds a pinned tip.
+const HOLDING: u32 = LEFT;
 
 /// What is the same for a whole strand.
 struct Strand {
     guide: u32,
+    /// Where its slots are.
+    base: u32,
+    /// Which of the turns this sub-step has.
+    turn: u32,
     root: Root,
     /// Where the root is, relative to the centre of the groom, and by what it has moved.
     root_now: vec3<f32>,
@@ -50,18 +61,53 @@ struct Strand {
     wind: vec3<f32>,
     /// 1 where the tip is pinned.
     tip_pinned: f32,
+    /// Whether the past counts: not after a reset, after a change of the sub-step, or after an edge turned too fast; and whether it
+    /// did one sub-step ago.
     has_past: bool,
+    had_past: bool,
     /// The length that the formula in time divides by.
     length: f32,
     /// What gravity makes of the sub-step.
     fall: vec3<f32>,
+    /// What the last three displacements of a vertex are multiplied by to give where the past says that it would be without forces.
+    carry: vec3<f32>,
+    /// What the last one is multiplied by: the part of that which is no velocity.
+    past: f32,
+    /// The displacement by the velocity, of the last two.
+    speed: vec2<f32>,
+}
+
+/// How a strand came out of the last sub-step.
+struct Marks { turn: u32, counts: bool, had_past: bool, had_past_before: bool }
+
+fn unpacked_marks(packed: f32) -> Marks {
+    let bits = u32(packed);
+    return Marks(bits & 3u, (bits & 4u) != 0u, (bits & 8u) != 0u, (bits & 16u) != 0u);
+}
+
+fn packed_marks(marks: Marks) -> f32 {
+    let flags = select(0u, 4u, marks.counts) | select(0u, 8u, marks.had_past) | select(0u, 16u, marks.had_past_before);
+    return f32(marks.turn | flags);
+}
+
+/// The displacement by the velocity in a sub-step, of the last two displacements: by the formula of second order, or of first.
+fn speed_of(second_order: bool, ratio: f32) -> vec2<f32> {
+    return ratio * select(vec2(1.0, 0.0), vec2(1.5, -0.5), second_order);
 }
 
 fn strand_of(guide: u32) -> Strand {
     let tip = rod_rest[2u * (step.vertices - 1u) * step.guides + guide];
-    let has_past = step.first_order == 0u && rods[VELOCITY * step.guides + guide].w > 0.5;
+    let base = guide / GROUP * step.vertices * SLOTS * GROUP + guide % GROUP;
+    let marks = unpacked_marks(rods[base + BEGIN * GROUP].w);
+    let lengths = rods[base + LENGTHS * GROUP].xy;
+    let ratios = select(step.length / lengths, vec2(1.0), lengths == vec2(0.0));
+    let has_past = step.first_order == 0u && marks.counts;
+    let now = speed_of(marks.had_past, ratios.x);
+    let before = speed_of(marks.had_past_before, ratios.y);
     var strand: Strand;
     strand.guide = guide;
+    strand.base = base;
+    strand.turn = (marks.turn + 1u) % MOVES;
     strand.root = root_of(guide);
     strand.root_now = shape_of(strand.root, rest[guide].xyz);
     strand.root_moved = strand.root_now - positions[guide].xyz + step.center_displacement;
@@ -72,57 +118,76 @@ fn strand_of(guide: u32) -> Strand {
     strand.mass_correction = select(5.0 / 6.0, 1.0, step.vertices == 2u) / 6.0;
     strand.wind = wind_of(guide);
     strand.has_past = has_past;
+    strand.had_past = marks.had_past;
     strand.tip_pinned = tip.w;
     strand.length = select(step.length, step.length * (2.0 / 3.0), has_past);
     strand.fall = step.gravity * select(1.0, 4.0 / 9.0, has_past);
+    strand.past = select(0.0, 1.0 / 3.0, has_past);
+    strand.speed = now;
+    // Of BDF2: two thirds of (4 times the last displacement by the velocity - that before) / 3.
+    let second = vec3(8.0 * now, 0.0) - vec3(0.0, 2.0 * before);
+    strand.carry = select(vec3(now, 0.0), second / 9.0 + vec3(1.0 / 3.0, 0.0, 0.0), has_past);
     return strand;
 }
 
 fn slot(strand: Strand, vertex: u32, slot: u32) -> u32 {
-    return (vertex * SLOTS + slot) * step.guides + strand.guide;
+    return strand.base + (vertex * SLOTS + slot) * GROUP;
 }
 
-fn length_of(strand: Strand, edge: u32) -> f32 {
-    return rod_rest[2u * edge * step.guides + strand.guide].w;
+/// What a vertex moved by so many sub-steps ago; 0 is this one.
+fn moved_slot(strand: Strand, vertex: u32, ago: u32) -> u32 {
+    return slot(strand, vertex, MOVED + (strand.turn + MOVES - ago) % MOVES);
 }
 
-fn half_turn(strand: Strand, edge: u32) -> vec4<f32> {
-    let v = rod_rest[2u * edge * step.guides + strand.guide].xyz;
-    return vec4(v, sqrt(1.0 - dot(v, v)));
+/// The frame of the edge before a vertex at the end of this sub-step (0) or of the last one (1).
+fn frame_slot(strand: Strand, vertex: u32, ago: u32) -> u32 {
+    return slot(strand, vertex, FRAME + (strand.turn + ago) % FRAMES);
 }
 
-fn frame_at_rest(strand: Strand, edge: u32) -> vec4<f32> {
-    return after(strand.root.rotation, rod_rest[(2u * edge + 1u) * step.guides + strand.guide]);
+/// The half turn and the length of the edge before a vertex.
+fn rest_before(strand: Strand, vertex: u32) -> vec4<f32> {
+    return rod_rest[2u * (vertex - 1u) * step.guides + strand.guide];
+}
+
+fn half_turn(packed: vec4<f32>) -> vec4<f32> {
+    return vec4(packed.xyz, sqrt(1.0 - dot(packed.xyz, packed.xyz)));
+}
+
+/// Of the edge before a vertex.
+fn frame_at_rest(strand: Strand, vertex: u32) -> vec4<f32> {
+    return after(strand.root.rotation, rod_rest[(2u * vertex - 1u) * step.guides + strand.guide]);
+}
+
+/// The length of the whole strand.
+fn reach_of(strand: Strand) -> f32 {
+    return rod_rest[(2u * strand.edges + 1u) * step.guides + strand.guide].x;
 }
 
 fn along(frame: vec4<f32>) -> vec3<f32> {
     return rotate(frame, vec3(0.0, 0.0, 1.0));
 }
 
-/// What an edge touched at the end of the last sub-step.
-@if(contacts)
-fn last_touch(strand: Strand, edge: u32) -> Touch {
-    let vertex = edge + 1u;
-    let obstacle = u32(rods[slot(strand, vertex, LAST_STRAIN)].w);
-    var touch = nothing_touched();
-    if (obstacle > 0u) {
-        let x = rods[slot(strand, vertex, MOVED)].w;
-        let y = rods[slot(strand, vertex, VELOCITY)].w;
-        let z = rods[slot(strand, vertex, LAST_VELOCITY)].w;
-        touch.obstacle = obstacle;
-        touch.stretch = vec3(x, y, z);
-        touch.normal = unpacked_direction(rods[slot(strand, vertex, STRAIN)].w);
-    }
-    return touch;
+/// A vertex and the edge before it, at the beginning of a round.
+struct Row {
+    /// What the vertex moved by one, two and three sub-steps ago, and its inverse mass.
+    moved: vec4<f32>,
+    moved_before: vec3<f32>,
+    moved_earlier: vec3<f32>,
+    /// The frame as far as it is known, and at the end of the last sub-step.
+    now: vec4<f32>,
+    frame: vec4<f32>,
+    /// Half turn and length.
+    rest: vec4<f32>,
 }
 
-/// An edge whose ends have moved by so much, as contacts see it.
-@if(contacts)
-fn edge_of(strand: Strand, edge: u32, u_moved: vec3<f32>, v_moved: vec3<f32>) -> Edge {
-    let root = positions[strand.guide].xyz;
-    let u_before = positions[edge * step.strands + strand.guide].xyz;
-    let v_before = positions[(edge + 1u) * step.strands + strand.guide].xyz;
-    let u = u_before - root + (u_moved - strand.root_moved);
-    let v = v_before - root + (v_moved - strand.root_moved);
-    return Edge(u, v, u_moved, v_moved, u_before, v_before);
+/// The row of a vertex; of the root, that it moved alone. The first round begins with the guess.
+fn row_of(strand: Strand, vertex: u32, is_first_round: bool) -> Row {
+    var row: Row;
+    row.moved = rods[moved_slot(strand, vertex, 1u)];
+    row.moved_before = rods[moved_slot(strand, vertex, 2u)].xyz;
+    row.moved_earlier = rods[moved_slot(strand, vertex, 3u)].xyz;
+    row.now = rods[select(frame_slot(strand, vertex, 0u), slot(strand, vertex, GUESS), is_first_round)];
+    row.frame = rods[frame_slot(strand, vertex, 1u)];
+    row.rest = rest_before(strand, max(vertex, 1u));
+    return row;
 }

@@ -2,8 +2,8 @@
 // it that yields at Coulomb's limit. All vectors are on the axes of the world, places are from the root where it is now.
 
 import package::capsule::{GpuCapsule, GpuCapsuleMotion};
-import package::joint::{outer, scaled_identity};
 import package::step::step;
+import package::symmetric::{Symmetric, outer, scaled, scaled_identity, sum};
 import package::vector::{DOWN, direction_or, rotate, rotate_back};
 
 /// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
@@ -61,17 +61,15 @@ struct Edge {
 /// What contacts do to an edge: half of a quadratic function of the displacement of its points, by the displacement of the vertex
 /// before it and by the rotation of its arm.
 struct Contacts {
-    place: mat3x3<f32>,
-    mixed: mat3x3<f32>,
-    turn: mat3x3<f32>,
+    place: Symmetric,
+    mixed: Symmetric,
+    turn: Symmetric,
     force: vec3<f32>,
     torque: vec3<f32>,
     /// The force across the surface alone, which tension knows of.
     pull: vec3<f32>,
     /// The deepest of them.
     touch: Touch,
-    /// The distance to the nearest capsule, or less.
-    clearance: f32,
 }
 
 /// Where an edge is nearest to the axis of a capsule: the shares of both, the direction from the axis to the edge, and the
@@ -86,17 +84,16 @@ fn nothing_touched() -> Touch {
 }
 
 /// The contacts of an edge with all capsules of the section. `last` is what it touched before, `root` where the root is, relative
-/// to the centre of the groom, and `stiffness` the mass of the vertex after the edge.
+/// to the centre of the groom, and `mass` that of the vertex after the edge.
 fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, mass: f32) -> Contacts {
     let none = scaled_identity(0.0);
-    var contacts = Contacts(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0), nothing_touched(), FAR);
+    var contacts = Contacts(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0), nothing_touched());
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
         let capsule = capsule_at(root, i);
         let near = nearest_points(capsule, edge.u, edge.v);
         let u_past = edge.u_moved - surface_moved(i, edge.u_before);
         let v_past = edge.v_moved - surface_moved(i, edge.v_before);
         let longest = sqrt(max(dot(u_past, u_past), dot(v_past, v_past)));
-        contacts.clearance = min(contacts.clearance, CERTAIN * near.gap / (1.0 + taper(capsule)));
         // Nothing of the way was nearer than this.
         if (near.gap > longest) { continue; }
         let index = i - step.first_capsule + 1u;
@@ -144,22 +141,22 @@ fn add(contacts: ptr<function, Contacts>, capsule: GpuCapsule, edge: Edge, way: 
     let along = stretched - dot(stretched, near.normal) * near.normal;
     let length = sqrt(dot(along, along));
     let most = step.friction * -near.gap / GRIP;
-    let across = outer(near.normal, near.normal);
-    var grip = GRIP * (scaled_identity(1.0) - across);
+    let across = outer(1.0, near.normal);
+    var grip = sum(scaled_identity(GRIP), scaled(-GRIP, across));
     var held = along;
     if (length > most) {
         // It yields: only the direction of the force changes.
         let direction = along / length;
-        grip = (most / length) * (grip - GRIP * outer(direction, direction));
+        grip = scaled(most / length, sum(grip, outer(-GRIP, direction)));
         held = most * direction;
     }
     let scale = weight * CONTACT * mass;
-    let stiffness = scale * (across + grip);
+    let stiffness = scaled(scale, sum(across, grip));
     let push = scale * -near.gap * near.normal;
     let force = push - scale * GRIP * held;
-    (*contacts).place += stiffness;
-    (*contacts).mixed += near.s * stiffness;
-    (*contacts).turn += near.s * near.s * stiffness;
+    (*contacts).place = sum((*contacts).place, stiffness);
+    (*contacts).mixed = sum((*contacts).mixed, scaled(near.s, stiffness));
+    (*contacts).turn = sum((*contacts).turn, scaled(near.s * near.s, stiffness));
     (*contacts).force += force;
     (*contacts).torque += near.s * force;
     (*contacts).pull += push;
@@ -196,12 +193,6 @@ fn surface_bound(place: vec3<f32>, reach: f32) -> f32 {
         most = max(most, length(moved) + 2.0 * turn * reach);
     }
     return most;
-}
-
-/// How fast the radius changes along the axis.
-fn taper(capsule: GpuCapsule) -> f32 {
-    let axis = distance(capsule.a, capsule.b);
-    return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
 }
 
 /// By what a rotation moves a point.

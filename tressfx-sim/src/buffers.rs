@@ -13,6 +13,7 @@ use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::Pose;
 
 use crate::collider::{GpuCapsule, GpuCapsuleMotion};
+use crate::kernel::GROUP;
 use crate::sim::SectionDesc;
 use crate::solver::Solver;
 use crate::step::Step;
@@ -46,7 +47,8 @@ pub(crate) struct SectionBuffers {
 pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
-    /// Fourteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other.
+    /// Fifteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
+    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 15 + slot) * GROUP + guide % GROUP`.
     pub(crate) state: BufferId,
 }
 
@@ -112,7 +114,7 @@ impl SectionBuffers {
             },
             rods: match desc.solver {
                 Solver::TressFx => None,
-                Solver::Direct => Some(RodBuffers::new(backend, shape.guide_vertices())?),
+                Solver::Direct => Some(RodBuffers::new(backend, shape)?),
             },
             roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
             steps: UniformArray::new(backend, "hair.steps", STEPS)?,
@@ -143,13 +145,19 @@ pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
 
 impl RodBuffers {
     /// Of a vertex, in the buffer of the state.
-    pub(crate) const BYTES: u64 = 16 * 14;
+    const SLOTS: u64 = 15;
 
-    fn new(backend: &mut dyn Backend, vertices: u32) -> Result<Self> {
+    fn new(backend: &mut dyn Backend, shape: StrandShape) -> Result<Self> {
+        let state = BufferDesc::storage("hair.rods", Self::state_bytes(shape.guides, shape.vertices));
         Ok(Self {
-            rest: storage(backend, "hair.rod_rest", 16 * 2, vertices)?,
-            state: storage(backend, "hair.rods", Self::BYTES, vertices)?,
+            rest: storage(backend, "hair.rod_rest", 16 * 2, shape.guide_vertices())?,
+            state: backend.create_buffer(&state)?,
         })
+    }
+
+    /// Of the buffer of the state: groups of threads are whole.
+    pub(crate) fn state_bytes(guides: u32, vertices: u32) -> u64 {
+        16 * Self::SLOTS * u64::from(guides.next_multiple_of(GROUP)) * u64::from(vertices)
     }
 }
 

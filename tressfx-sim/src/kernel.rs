@@ -18,20 +18,24 @@ use crate::buffers::{STEPS, SectionBuffers};
 use crate::section::Shared;
 
 /// Threads of a group; `package::grid::GROUP` in WGSL.
-const GROUP: u32 = 64;
+pub(crate) const GROUP: u32 = 64;
 
 /// The WGSL modules that the kernels share.
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
     ("contact", include_str!("../shaders/contact.wgsl")),
+    ("eliminate", include_str!("../shaders/eliminate.wgsl")),
     ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
     ("lengths", include_str!("../shaders/lengths.wgsl")),
     ("local_shape", include_str!("../shaders/local_shape.wgsl")),
     ("rod", include_str!("../shaders/rod.wgsl")),
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
+    ("rod_touch", include_str!("../shaders/rod_touch.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
+    ("substitute", include_str!("../shaders/substitute.wgsl")),
+    ("symmetric", include_str!("../shaders/symmetric.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
     ("wind", include_str!("../shaders/wind.wgsl")),
 ];

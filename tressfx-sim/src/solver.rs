@@ -27,7 +27,7 @@ impl Solver {
     pub fn state_bytes(self, strands: &Strands) -> u64 {
         match self {
             Self::TressFx => 0,
-            Self::Direct => RodBuffers::BYTES * u64::from(strands.guides) * u64::from(strands.vertices),
+            Self::Direct => RodBuffers::state_bytes(strands.guides, strands.vertices),
         }
     }
 

@@ -1,0 +1,223 @@
+// The sweep of a round from the tip to the root: takes each edge out of the system, and gives the vertex before it and its parent what
+// the edge and all beyond want of them. That is half of a quadratic function of the displacement of a vertex and of the rotation of
+// the edge before it.
+
+import package::joint::{Stiffness, by_spring, joint_between, spring_of, stiffness_of, torque_by, torque_of};
+import package::rod::{
+    HOLDING, LAST_STRAIN, LEFT, Row, STRAIN, Strand, along, half_turn, rest, rods, row_of, slot,
+};
+import package::root::shape_of;
+import package::step::step;
+import package::symmetric::{
+    Symmetric, cross_columns, inverse, outer, scaled, scaled_identity, sum, symmetric, symmetric_product, times, trace, whole,
+    with_transpose,
+};
+import package::vector::direction_or;
+@if(contacts)
+import package::rod_contact::contacts_of;
+@if(contacts)
+import package::rod_touch::{Range, edge_between, is_in, last_touch, may_touch};
+
+/// How stiff the spring is that holds a pinned tip, over the mass of the tip.
+const HOLD: f32 = 1e4;
+/// What holds an edge against a rotation about itself is never less than this share of all that holds it.
+const LEAST_TWIST: f32 = 1e-6;
+
+/// What a round begins with.
+struct Begin {
+    is_first_round: bool,
+    /// What the tip has moved by, and where it is from the root.
+    moving: vec3<f32>,
+    place: vec3<f32>,
+    /// The frame before the first free edge.
+    parent: vec4<f32>,
+    /// The edges that may touch something.
+    @if(contacts) near: Range,
+    /// The most that the surface of any capsule has moved.
+    @if(contacts) surface: f32,
+}
+
+/// What is left of an edge: its rotation is `free + inverse * (K * rotation of its parent - transpose(mixed) * displacement of the vertex
+/// before it)`, with the stiffness K of its joint.
+struct Left {
+    free: vec3<f32>,
+    inverse: Symmetric,
+    mixed: mat3x3<f32>,
+    /// The bending stiffness that K has.
+    bending: f32,
+}
+
+fn store_left(strand: Strand, vertex: u32, left: Left) {
+    rods[slot(strand, vertex, LEFT)] = vec4(left.inverse.diagonal, left.bending);
+    rods[slot(strand, vertex, LEFT + 1u)] = vec4(left.inverse.beside, 0.0);
+    rods[slot(strand, vertex, LEFT + 2u)] = vec4(left.mixed[0], left.free.x);
+    rods[slot(strand, vertex, LEFT + 3u)] = vec4(left.mixed[1], left.free.y);
+    rods[slot(strand, vertex, LEFT + 4u)] = vec4(left.mixed[2], left.free.z);
+}
+
+fn left_of(strand: Strand, vertex: u32) -> Left {
+    let diagonal = rods[slot(strand, vertex, LEFT)];
+    let beside = rods[slot(strand, vertex, LEFT + 1u)];
+    let first = rods[slot(strand, vertex, LEFT + 2u)];
+    let second = rods[slot(strand, vertex, LEFT + 3u)];
+    let third = rods[slot(strand, vertex, LEFT + 4u)];
+    let inverse = Symmetric(diagonal.xyz, beside.xyz);
+    return Left(vec3(first.w, second.w, third.w), inverse, mat3x3(first.xyz, second.xyz, third.xyz), diagonal.w);
+}
+
+/// A vertex: where the past says that it would be without forces, and with gravity alone, from where it is.
+struct Pulled { place: vec3<f32>, free: vec3<f32> }
+
+fn pulled(strand: Strand, row: Row, moving: vec3<f32>) -> Pulled {
+    let carry = strand.carry.x * row.moved.xyz + strand.carry.y * row.moved_before + strand.carry.z * row.moved_earlier;
+    return Pulled(strand.past * row.moved.xyz - moving, carry - moving + strand.fall);
+}
+
+/// The mass of a vertex with what acts on it in proportion to its place, and the force.
+struct Inertia { mass: Symmetric, force: vec3<f32> }
+
+/// `place` is from the root.
+fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, place: vec3<f32>, axis: vec3<f32>) -> Inertia {
+    let across = strand.length * step.drag_across;
+    let along = strand.length * step.drag_along - across;
+    let blown = pulled.place + strand.length * strand.wind;
+    var force = pulled.free + across * blown + along * dot(axis, blown) * axis;
+    var held = 1.0 + across;
+    @if(pull) {
+        let pull = strand.length * strand.length * step.pull;
+        let goal = shape_of(strand.root, rest[vertex * step.guides + strand.guide].xyz);
+        force += pull * (goal - strand.root_now - place);
+        held += pull;
+    }
+    return Inertia(sum(scaled_identity(mass * held), outer(mass * along, axis)), mass * force);
+}
+
+fn eliminate(strand: Strand, begin: Begin) {
+    let tip = strand.edges;
+    var row = row_of(strand, tip, begin.is_first_round);
+    var next = row_of(strand, tip - 1u, begin.is_first_round);
+    var axis = along(row.now);
+    var moving = begin.moving;
+    var at = begin.place;
+    var after_edge = pulled(strand, row, moving);
+    let last = inertia(strand, tip, 0.5 * row.rest.w, after_edge, at, axis);
+    let spring = hold_stiffness(strand, row.rest.w);
+    let hold = rods[slot(strand, 0u, HOLDING)].xyz;
+    let gap = hold_place(strand) - strand.root_now - at;
+    var place = sum(last.mass, scaled_identity(spring));
+    var mixed = mat3x3<f32>();
+    var turn = scaled_identity(0.0);
+    var force = last.force + hold + spring * gap;
+    var torque = vec3(0.0);
+    // The force that the tip has come to is held with, not that of the spring, which changes its sign from round to round.
+    var pull = last.force + hold;
+    // Of the edge after the one at hand, which has half of the mass between them.
+    var length_after = 0.0;
+    @if(contacts) var clear = 0.0;
+    for (var vertex = tip; vertex > strand.held; vertex--) {
+        let length = row.rest.w;
+        var length_before = 0.0;
+        var parent = begin.parent;
+        var direction = axis;
+        if (vertex > 1u) {
+            length_before = next.rest.w;
+            if (vertex > strand.held + 1u) { parent = next.now; }
+            direction = along(parent);
+        }
+        let end_moving = moving;
+        let end_at = at;
+        moving -= length * (axis - along(row.frame));
+        at -= length * axis;
+        let before_edge = pulled(strand, next, moving);
+
+        // The vertex after the edge moves by the one before it and `rotation x arm`.
+        let arm = length * axis;
+        turn = sum(turn, sum(with_transpose(cross_columns(arm, mixed)), turn_by(arm, place)));
+        torque += cross(arm, force);
+        mixed += mixed_by(arm, place);
+        @if(contacts) {
+            let edge = edge_between(strand, at, end_at, moving, end_moving);
+            if (is_in(begin.near, vertex) && may_touch(&clear, begin.surface, strand, edge, length)) {
+                let mass = 0.5 * (length + length_after);
+                let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), mass);
+                turn = sum(turn, turn_by(arm, contacts.turn));
+                torque += cross(arm, contacts.torque);
+                mixed += mixed_by(arm, contacts.mixed);
+                place = sum(place, contacts.place);
+                force += contacts.force;
+                pull += contacts.pull;
+            }
+            length_after = length;
+        }
+        // Tension pulls an edge straight; pressure would let it fall, and is left out.
+        let correction = strand.mass_correction * length;
+        let tension = length * max(dot(axis, pull), 0.0) - correction * length * length;
+        turn = sum(turn, sum(scaled_identity(tension), outer(-tension, axis)));
+        torque -= correction * cross(arm, after_edge.free - before_edge.free);
+
+        let joined = select(0.0, length_before, vertex > strand.held + 1u);
+        let span = max(0.5 * (joined + length), strand.shortest_span);
+        let joint = joint_between(parent, half_turn(row.rest), row.now);
+        let bending = strand.bending / span * strand.length * strand.length;
+        let stiffness = Stiffness(bending, step.twist_ratio, step.internal_damping / strand.length);
+        let own = torque_of(joint, stiffness, past_strain(strand, vertex, joint.strain));
+        let spring = spring_of(joint, stiffness);
+        let stiff = stiffness_of(spring);
+
+        // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
+        turn = sum(turn, outer(LEAST_TWIST * trace(sum(turn, stiff)), axis));
+        let inverted = inverse(sum(turn, stiff));
+        let rows = transpose(mixed);
+        let by_place = mat3x3(times(inverted, rows[0]), times(inverted, rows[1]), times(inverted, rows[2]));
+        let free = times(inverted, torque + own);
+        store_left(strand, vertex, Left(free, inverted, mixed, spring.bending));
+
+        let mass = 0.5 * (length_before + length);
+        let vertex_axis = direction_or(axis + direction, axis);
+        let before = inertia(strand, vertex - 1u, mass, before_edge, at, vertex_axis);
+        place = sum(sum(place, scaled(-1.0, symmetric_product(mixed, by_place))), before.mass);
+        force += before.force - mixed * free;
+        // Equal to `stiff * free - own`, without the difference of two large numbers.
+        torque = torque_by(spring, times(inverted, torque)) - times(turn, times(inverted, own));
+        mixed = by_spring(transpose(by_place), spring);
+        turn = scaled(0.5, with_transpose(by_spring(whole(turn) * whole(inverted), spring)));
+        pull += before.force;
+
+        after_edge = before_edge;
+        axis = direction;
+        row = next;
+        // Not earlier: that takes registers that there are not.
+        next = row_of(strand, max(vertex, 2u) - 2u, begin.is_first_round);
+    }
+}
+
+/// What the past says of a strain.
+fn past_strain(strand: Strand, vertex: u32, strain: vec3<f32>) -> vec3<f32> {
+    @if(!internal_damping) { return strain; }
+    @if(internal_damping) {
+        let last = rods[slot(strand, vertex, STRAIN)].xyz;
+        let before = rods[slot(strand, vertex, LAST_STRAIN)].xyz;
+        return select(last, (4.0 * last - before) / 3.0, strand.has_past);
+    }
+}
+
+/// The stiffness of the spring that holds a pinned tip behind an edge of this length; 0 where the tip is free.
+fn hold_stiffness(strand: Strand, length: f32) -> f32 {
+    @if(!pinned_tips) { return 0.0; }
+    @if(pinned_tips) { return strand.tip_pinned * HOLD * 0.5 * length; }
+}
+
+/// Where a pinned tip is held.
+fn hold_place(strand: Strand) -> vec3<f32> {
+    return shape_of(strand.root, rest[strand.edges * step.guides + strand.guide].xyz);
+}
+
+/// What a matrix of displacements is as one of displacements by rotations, where these displace by `rotation x arm`;
+fn mixed_by(arm: vec3<f32>, m: Symmetric) -> mat3x3<f32> {
+    return transpose(cross_columns(arm, whole(m)));
+}
+
+/// and as one of rotations.
+fn turn_by(arm: vec3<f32>, m: Symmetric) -> Symmetric {
+    return symmetric(cross_columns(arm, mixed_by(arm, m)));
+}
