@@ -20,7 +20,7 @@ use tressfx_core::backend::{Backend, Run as _};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
-use tressfx_sim::{ClockParams, HairSim, SectionDesc, SimParams, StepInput, metrics};
+use tressfx_sim::{ClockParams, HairSim, SectionDesc, SimParams, Solver, StepInput, metrics};
 
 const FPS: f64 = 60.0;
 const FRAMES: u32 = 6;
@@ -108,7 +108,8 @@ impl Run {
         let (rate, iterations) = setting;
         let params = SimParams { local_iterations: iterations, length_iterations: iterations, ..SimParams::default() };
         let mut list = PassList::new();
-        let mut sim = HairSim::new(backend, &mut list, &[SectionDesc::new(strands, params)], 0)?;
+        let mut sim =
+            HairSim::new(backend, &mut list, &[SectionDesc::new(strands, params).with_solver(Solver::TressFx)], 0)?;
         backend.run(&list)?;
         sim.set_clock_params(ClockParams { sub_step: 1.0 / f64::from(rate), ..ClockParams::default() })?;
         Ok(Self { setting, sim, passes: BTreeMap::new(), frames: Vec::new() })

@@ -110,13 +110,13 @@ pub struct SectionInfo {
 }
 
 impl SectionInfo {
-    /// That of a section of these strands, with the default solver.
-    pub fn of(strands: &Strands) -> Self {
+    /// That of a section of these strands, which this solver moves.
+    pub fn new(strands: &Strands, solver: Solver) -> Self {
         Self {
-            solver: Solver::default(),
             shape: StrandShape::of(strands),
             metres_per_unit: strands.metres_per_unit,
             tip_separation: strands.tip_separation,
+            solver,
         }
     }
 }

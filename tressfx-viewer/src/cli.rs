@@ -193,7 +193,7 @@ pub(crate) struct Shaders {
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
     /// What solves the equations of motion
-    #[arg(long, value_enum, default_value_t = SolverName::Tressfx)]
+    #[arg(long, value_enum, default_value_t = SolverName::Direct)]
     pub(crate) solver: SolverName,
     /// Follow strands of each guide; without it, as `render` has them
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]

@@ -142,7 +142,7 @@ impl<'a> Simulation<'a> {
 impl<'a> Section<'a> {
     fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
-        let info = SectionInfo { solver: desc.solver, ..SectionInfo::of(strands) };
+        let info = SectionInfo::new(strands, desc.solver);
         let rod = |guide: usize| {
             let (rest, _) = rod_rest(strands, &desc.params, guide);
             let rod = Rod::at_rest(&rest, DQuat::IDENTITY);
