@@ -12,6 +12,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bending_length;
 mod buffers;
 mod clock;
 mod collider;
@@ -20,6 +21,7 @@ mod input;
 mod kernel;
 pub mod metrics;
 mod params;
+mod preset;
 pub mod reference;
 mod rods;
 mod section;
@@ -35,6 +37,7 @@ pub use collider::{CapsuleMotion, Collider, ColliderMotion};
 pub use error::SimError;
 pub use input::StepInput;
 pub use params::{ParamError, SimParams};
+pub use preset::{NoPreset, Preset};
 pub use rods::Standing;
 pub use sim::{HairSim, SectionDesc, StepReport};
 pub use solver::Solver;

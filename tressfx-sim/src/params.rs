@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::bending_length;
+
 /// How the strands of a section move. Metres and seconds; converted to the unit of the file when uploaded.
 ///
 /// The first three count for both solvers, those from `bending_length` to `rounds` for [`Solver::Direct`](crate::Solver::Direct), the others for
@@ -26,7 +28,7 @@ pub struct SimParams {
     pub tip_separation: Option<f32>,
     /// Of [`Solver::Direct`](crate::Solver::Direct), as all up to `rounds`: the length, in metres, at which a strand starts to bend under its own weight,
     /// `(EI / (density * area * g))^(1/3)` with `g` = 9.81 m/s^2; 0.002 to 10. Held horizontally, a strand of this length droops by
-    /// an eighth of it. Single hairs have 0.03 to 0.06, gelled ones 0.3 to 1.
+    /// an eighth of it. Single hairs have 0.03 to 0.06, gelled ones 0.3 to 1: [`Preset`](crate::Preset) has some.
     pub bending_length: f32,
     /// Twist stiffness over bending stiffness, 0.1 to 10; real hair has about 0.75.
     pub twist_ratio: f32,
@@ -145,7 +147,7 @@ impl SimParams {
         within("gravity (its length)", self.gravity.length(), 0.0..=1000.0)?;
         within("friction", self.friction, 0.0..=1.0)?;
         within("tip_separation", self.tip_separation.unwrap_or(0.0), -1.0..=100.0)?;
-        within("bending_length", self.bending_length, 0.002..=10.0)?;
+        within("bending_length", self.bending_length, bending_length::RANGE)?;
         within("twist_ratio", self.twist_ratio, 0.1..=10.0)?;
         within("internal_damping", self.internal_damping, 0.0..=1.0)?;
         within("air_drag", self.air_drag, 0.0..=1000.0)?;

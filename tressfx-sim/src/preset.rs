@@ -96,7 +96,9 @@ mod tests {
     #[test]
     fn presets_are_what_their_fibres_are() {
         for (preset, [modulus, density, diameter]) in Preset::ALL.into_iter().zip(FIBRES) {
-            let near = |value: f32, expected: f64| assert!((f64::from(value) / expected - 1.0).abs() < 0.03, "{preset:?}: {expected}");
+            let near = |value: f32, expected: f64| {
+                assert!((f64::from(value) / expected - 1.0).abs() < 0.03, "{preset:?}: {expected}")
+            };
             near(preset.bending_length, of_fibre(modulus, density, diameter));
             near(preset.air_drag, drag(density, diameter));
             if diameter > 1e-4 {
