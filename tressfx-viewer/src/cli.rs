@@ -142,6 +142,9 @@ pub(crate) struct Render {
     /// A .png of the last frame, a .gif or .apng of all, or a folder (ending in /) with every frame
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// The first frame that is written where every frame is, from 0; those before it are simulated alone
+    #[arg(long, default_value_t = 0, value_name = "FRAME")]
+    pub(crate) from: u32,
     /// Width and height in pixels
     #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
     pub(crate) size: [u32; 2],
