@@ -10,7 +10,7 @@ use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::bending_length::of_local_stiffness;
 use tressfx_sim::metrics::{self, EdgeError};
-use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
 use crate::backend;
 use crate::cli::{self, BackendName};
@@ -112,7 +112,9 @@ impl Run {
         let mut uploads = PassList::new();
         let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
         backend.run(&uploads)?;
-        sim.set_clock_params(params.clock)?;
+        // A frame of any length is simulated whole, with what the one before it left over.
+        let longest = 1.0 / args.fps + params.clock.sub_step;
+        sim.set_clock_params(ClockParams { max_frame: params.clock.max_frame.max(longest), ..params.clock })?;
         groom.sections.iter().enumerate().for_each(|(index, strands)| say_standing(&sim, index, strands));
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
@@ -140,11 +142,10 @@ impl Run {
             return Ok(list);
         }
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
-        for part in 1..=parts as u32 {
-            let head = self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
-            let input = StepInput::new(1.0 / (args.fps * parts), head).with_colliders(&self.colliders);
-            self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
-        }
+        let at = |part: u32| self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
+        let (path, head): (Vec<_>, _) = ((1..parts as u32).map(at).collect(), at(parts as u32));
+        let input = StepInput::new(1.0 / args.fps, head).with_path(&path).with_colliders(&self.colliders);
+        self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
         self.frame += 1;
         Ok(list)
     }

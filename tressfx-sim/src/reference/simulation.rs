@@ -75,7 +75,7 @@ impl<'a> Simulation<'a> {
     /// Something in the input that is not finite or out of range.
     pub fn step(&mut self, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
-        let plan = self.clock.advance(input.dt, input.head);
+        let plan = self.clock.advance_along(input.dt, input.path, input.head);
         let center = self.clock.center();
         for (index, section) in self.sections.iter_mut().enumerate() {
             if let Some(rotation) = plan.reset {
