@@ -20,7 +20,7 @@ const PICTURES: [(&str, &str); 11] = [
     ("preset-sprayed.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset sprayed"),
     ("preset-mohawk.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset mohawk"),
     // Whole periods of the motion, after the first.
-    ("long-turn.gif", "builtin:long:4000 --motion turn --fps 20 --from 50 --frames 100 --size 300x300"),
+    ("long-turn.gif", "builtin:long:2000 --follow 1 --motion turn --fps 20 --from 50 --frames 100 --size 256x256"),
     (
         "mohawk-shake.gif",
         "TRESSFX_ASSETS/tressfx41_ratboy/Ratboy_mohawk.tfx --motion shake --fps 24 --from 48 --frames 80 --size 300x300",
