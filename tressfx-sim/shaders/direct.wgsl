@@ -366,7 +366,8 @@ fn keep_touch(strand: Strand, vertex: u32) {
 
 /// Stores the state that the next sub-step begins with, and the positions. Says whether they are finite.
 fn finish(strand: Strand, calm: bool) -> bool {
-    var place = strand.root_now;
+    // From the root, so that what changes by less than a rounding of a coordinate moves a vertex by one rounding, not by one an edge.
+    var reach = vec3(0.0);
     var finite = true;
     for (var i = 0u; i < step.vertices; i++) {
         let moving = rods[slot(strand, i, MOVING)].xyz;
@@ -381,12 +382,13 @@ fn finish(strand: Strand, calm: bool) -> bool {
         rods[slot(strand, i, MOVED)] = vec4(moving, 0.0);
         let then = positions[i * step.strands + strand.guide];
         if (i == strand.edges) { keep_hold(strand, then.xyz - step.center_displacement + moving); }
+        let place = strand.root_now + reach;
         positions[i * step.strands + strand.guide] = vec4(place, then.w);
         finite = finite && is_finite(place) && is_finite(velocity);
         if (i < strand.edges) {
             let now = rods[slot(strand, i, NOW)];
             rods[slot(strand, i, FRAME)] = now;
-            place += length_of(strand, i) * along(now);
+            reach += length_of(strand, i) * along(now);
         }
     }
     store_strains(strand, true);
