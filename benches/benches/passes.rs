@@ -21,7 +21,7 @@ use tressfx_render::{
     Counters, Fill, HairRenderer, Light, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
     ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
 };
-use tressfx_sim::{HairSim, SectionDesc, SimParams, StepInput};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, Solver, StepInput};
 
 /// Frames in which pools grow to what was measured.
 const FRAMES_OF_GROWTH: usize = 4;
@@ -53,9 +53,11 @@ fn device(
     for groom in grooms(is_cpu) {
         let strands = strands(&groom)?;
         let short = groom.rsplit('/').next().unwrap_or(&groom).trim_start_matches("builtin:");
-        let mut sim = Sim::new(backend, &strands)?;
-        bench(criterion, clock, &format!("sim/{short}/{name}"), &mut || sim.frame(backend))?;
-        sim.sim.destroy(backend);
+        for (solver, label) in [(Solver::Direct, "direct"), (Solver::TressFx, "tressfx")] {
+            let mut sim = Sim::new(backend, &strands, solver)?;
+            bench(criterion, clock, &format!("sim/{label}/{short}/{name}"), &mut || sim.frame(backend))?;
+            sim.sim.destroy(backend);
+        }
         let mut hair = Hair::new(backend, &strands, size)?;
         for (technique, desc) in techniques() {
             let group = format!("render/{technique}/{short}/{name}");
@@ -139,9 +141,9 @@ struct Sim {
 }
 
 impl Sim {
-    fn new(backend: &mut dyn Run, strands: &Strands) -> Result<Self, Failure> {
+    fn new(backend: &mut dyn Run, strands: &Strands, solver: Solver) -> Result<Self, Failure> {
         let mut list = PassList::new();
-        let desc = SectionDesc::new(strands, SimParams::default());
+        let desc = SectionDesc::new(strands, SimParams::default()).with_solver(solver);
         let sim = HairSim::new(backend, &mut list, &[desc], 0)?;
         backend.run(&list)?;
         let mut made = Self { sim, metres_per_unit: strands.metres_per_unit, frames: 0 };

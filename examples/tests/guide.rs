@@ -129,10 +129,10 @@ fn everything() -> PassList {
     let mut backend = NullBackend::default();
     let groom = Builtin::parse("curly:8:6").unwrap();
     let strands = Strands::new(&groom.asset(), &StrandOptions { follows: Some(2), ..Default::default() }).unwrap();
-    let section = SectionDesc::new(&strands, SimParams::default());
+    let rods = SectionDesc::new(&strands, SimParams::default());
     let colliders = Collider::all_with_head(&groom.capsules());
     let mut list = PassList::new();
-    let rods = section.clone().with_solver(Solver::Direct);
+    let section = rods.clone().with_solver(Solver::TressFx);
     let sections = [section.clone(), section.with_own_roots(), rods];
     let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
     let wind = Wind::new(glam::Vec3::X);

@@ -28,25 +28,27 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A simulation of these sections.
+    /// A simulation of these sections, which the published method moves.
     ///
     /// # Panics
     /// If the simulation cannot be made.
     pub fn new(mut backend: Box<dyn Run>, sections: Vec<(Strands, SimParams)>, capsules: &[Capsule]) -> Self {
-        let descs: Vec<_> =
-            sections.iter().map(|(strands, params)| SectionDesc::new(strands, params.clone())).collect();
+        let descs: Vec<_> = sections
+            .iter()
+            .map(|(strands, params)| SectionDesc::new(strands, params.clone()).with_solver(Solver::TressFx))
+            .collect();
         let (sim, list) = Self::simulation(&mut *backend, &descs, capsules.len());
         backend.run(&list).expect("the uploads run");
         let strands = sections.into_iter().map(|(strands, _)| strands).collect();
         Self { backend, sim, strands, capsules: capsules.to_vec() }
     }
 
-    /// A simulation of one section whose roots have transforms of their own.
+    /// The same of one section whose roots have transforms of their own.
     ///
     /// # Panics
     /// If the simulation cannot be made.
     pub fn with_own_roots(mut backend: Box<dyn Run>, strands: Strands, params: SimParams) -> Self {
-        let desc = SectionDesc::new(&strands, params).with_own_roots();
+        let desc = SectionDesc::new(&strands, params).with_solver(Solver::TressFx).with_own_roots();
         let (sim, list) = Self::simulation(&mut *backend, &[desc], 0);
         backend.run(&list).expect("the uploads run");
         Self { backend, sim, strands: vec![strands], capsules: Vec::new() }

@@ -12,7 +12,7 @@ use tressfx_render::{
     Counters, Fill, HairRenderer, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc, StrandInfo,
     Technique, TilesDesc,
 };
-use tressfx_sim::{HairSim, SectionDesc, SimParams};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, Solver};
 
 fn backend() -> Failing<NullBackend> {
     Failing::new(NullBackend::new(Caps::webgpu_default()))
@@ -32,7 +32,8 @@ fn strand_buffers() {
 fn a_simulation_and_its_parameters() {
     let mut backend = backend();
     let strands = [random_strands(8, 8, 1, 1), random_strands(4, 6, 0, 2)];
-    let descs: Vec<_> = strands.iter().map(|strands| SectionDesc::new(strands, SimParams::default())).collect();
+    let [rods, published] = strands.each_ref().map(|strands| SectionDesc::new(strands, SimParams::default()));
+    let descs = [published.with_solver(Solver::TressFx), rods];
     let (mut sim, failures) = backend.fail_everywhere(|backend| HairSim::new(backend, &mut PassList::new(), &descs, 1));
     assert!(failures > 20, "{failures} creations");
     let before = backend.living();

@@ -12,7 +12,7 @@ use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{SectionInfo, Step};
-use tressfx_sim::{CapsuleMotion, SimParams, Stage, StepInput, SubStep};
+use tressfx_sim::{CapsuleMotion, SimParams, Solver, Stage, StepInput, SubStep};
 
 const GUIDES: usize = 2000;
 const VERTICES: [u32; 5] = [2, 3, 4, 5, 16];
@@ -94,7 +94,7 @@ type Pair = (Vec<Vec4>, Vec<DVec3>);
 
 /// The kernel, once from the rest pose, on a head that moves: positions and previous positions. And how many strands it moves.
 fn collided(rig: &mut Rig, head: Pose) -> ([Pair; 2], usize) {
-    let step = step(&SectionInfo::of(&rig.strands[0]), head);
+    let step = step(&SectionInfo::new(&rig.strands[0], Solver::TressFx), head);
     rig.frame(&StepInput::new(0.0, head));
     let (mut positions, mut previous) = (wide(&rig.positions(0)), wide(&rig.previous(0)));
     rig.stage(&step, Stage::TressFx);
@@ -156,7 +156,7 @@ fn collided_reference(strands: &Strands, guide: usize, state: &State) -> State {
     let (rest, rest_lengths) = (&strands.rest[range.clone()], &strands.rest_lengths[range]);
     let mut of_guide = Guide { rest, rest_lengths, positions, previous, own_root: None };
     let solids = solids().map(|capsule| (capsule, CapsuleMotion::STILL));
-    let step = step(&SectionInfo::of(strands), Pose::default());
+    let step = step(&SectionInfo::new(strands, Solver::TressFx), Pose::default());
     assert!(!reference::tressfx(&step, &limp(), &mut of_guide, 0, &solids));
     after
 }

@@ -126,14 +126,8 @@ fn grooms_rest_in_the_pose_of_their_file() {
         off.sort_by(f32::total_cmp);
         let (median, most) = (off[off.len() / 2], off[off.len() - 1]);
         let moved = moves.iter().copied().fold(0.0, f32::max);
-        let restless = moves.iter().filter(|&&moved| moved > 1e-6).count();
-        println!(
-            "{name}: {standing:?}; tips off by {median:.1e} (median), {most:.1e}; moves by {moved:.1e} a frame, {restless} of {} by \
-             more than 1e-6",
-            moves.len()
-        );
-        // Of the mohawk nine strands, which f32 knows less well, go on by up to 6e-6.
-        assert!(most < 5e-3 && moved < 1e-5 && restless <= moves.len() / 200, "{name}: {most:e} {moved:e} {restless}");
+        println!("{name}: {standing:?}; tips off by {median:.1e} (median), {most:.1e}; moves by {moved:.1e} a frame");
+        assert!(most < 5e-3 && moved < 1e-6, "{name}: {most:e} {moved:e}");
         assert_eq!(rig.non_finite(), 0);
     }
 }

@@ -9,7 +9,7 @@ use tressfx_conformance::sim::{Rig, builtin, random_strands, wide};
 use tressfx_core::backend::Run;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
-use tressfx_sim::{SectionDesc, SimParams, StepInput, reference};
+use tressfx_sim::{SectionDesc, SimParams, Solver, StepInput, reference};
 
 /// Speeds of the head, m/s.
 const SPEEDS: [f32; 3] = [1.5, 5.0, 30.0];
@@ -45,7 +45,8 @@ fn tips(strands: &Strands, positions: &[DVec3]) -> Vec<DVec3> {
 
 fn in_f64(strands: &Strands, shock: f32, speed: f32) -> Vec<DVec3> {
     let params = SimParams { shock, ..SimParams::default() };
-    let mut sim = reference::Simulation::new(&[SectionDesc::new(strands, params)]).unwrap();
+    let mut sim =
+        reference::Simulation::new(&[SectionDesc::new(strands, params).with_solver(Solver::TressFx)]).unwrap();
     inputs(strands, speed).for_each(|input| assert!(sim.step(&input).is_ok()));
     tips(strands, &sim.positions(0))
 }

@@ -71,7 +71,7 @@ fn step(strands: &Strands, case: &Case) -> Step {
         ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
     let wind = case.wind.then(|| Wind::new(Vec3::new(-0.6, 0.2, 0.4)));
-    Step::new(&case.params, &SectionInfo::of(strands), &sub_step, wind.as_ref())
+    Step::new(&case.params, &SectionInfo::new(strands, Solver::TressFx), &sub_step, wind.as_ref())
 }
 
 /// Positions and previous positions of the guides, in f64.

@@ -6,7 +6,7 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::sim::{Motion, REAL, builtin, lengths, random_strands, real, strand_errors, strands_of, wide};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{Strands, relative_to};
-use tressfx_sim::{ClockParams, Collider, SectionDesc, SimParams, metrics, reference};
+use tressfx_sim::{ClockParams, Collider, SectionDesc, SimParams, Solver, metrics, reference};
 
 use support::rig;
 
@@ -34,7 +34,8 @@ fn against_reference(name: &str, strands: Strands, capsules: &[Capsule]) {
     let motion = Motion::turning(&strands);
     let params = SimParams::default();
     let Some(mut rig) = rig(strands.clone(), params.clone(), capsules) else { return };
-    let mut reference = reference::Simulation::new(&[SectionDesc::new(&strands, params)]).unwrap();
+    let mut reference =
+        reference::Simulation::new(&[SectionDesc::new(&strands, params).with_solver(Solver::TressFx)]).unwrap();
     let colliders = Collider::all_with_head(capsules);
     rig.play(&motion, 0.5, 60);
     reference.step(&motion.input(0.0, 0.0)).unwrap();
@@ -191,7 +192,7 @@ fn the_sub_step_changes_little() {
 #[test]
 fn references_agree_on_what_a_frame_is() {
     let strands = random_strands(3, 5, 1, 9);
-    let descs = [SectionDesc::new(&strands, SimParams::default())];
+    let descs = [SectionDesc::new(&strands, SimParams::default()).with_solver(Solver::TressFx)];
     let mut reference = reference::Simulation::new(&descs).unwrap();
     let motion = Motion::still(&strands);
     let report = reference.step(&motion.input(0.0, 0.0)).unwrap();

@@ -33,7 +33,7 @@ fn labels(params: SimParams, capsules: &[Capsule], strands: &Strands, motion: &M
     let mut backend = NullBackend::default();
     let mut list = PassList::new();
     let colliders = Collider::all_with_head(capsules);
-    let sections = [SectionDesc::new(strands, params)];
+    let sections = [SectionDesc::new(strands, params).with_solver(Solver::TressFx)];
     let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
     sim.step(&mut list, &motion.input(0.0, 0.0).with_colliders(&colliders)).unwrap();
     list.clear_commands();
@@ -393,7 +393,7 @@ fn every_kernel_fits_the_limits_of_webgpu_and_its_structs_are_those_of_the_wgsl(
     let mut backend = NullBackend::default();
     let strands = random_strands(10, 5, 1, 2);
     let ball = Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: 0.1, radius_b: 0.1 };
-    let desc = SectionDesc::new(&strands, SimParams::default()).with_own_roots();
+    let desc = SectionDesc::new(&strands, SimParams::default()).with_solver(Solver::TressFx).with_own_roots();
     let rods = desc.clone().with_solver(Solver::Direct);
     let mut list = PassList::new();
     let mut sim = HairSim::new(&mut backend, &mut list, &[desc, rods], 1).unwrap();

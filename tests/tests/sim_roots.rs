@@ -7,7 +7,7 @@ use support::gpu;
 use tressfx_conformance::sim::{Motion, Rig, random_strands, strand_errors, wide};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
-use tressfx_sim::{SectionDesc, SimError, SimParams, StepInput, reference};
+use tressfx_sim::{SectionDesc, SimError, SimParams, Solver, StepInput, reference};
 
 /// One sub-step a frame, so that between frames nothing has to be guessed.
 const FPS: u32 = 120;
@@ -106,7 +106,7 @@ fn a_twisting_scalp_matches_the_reference() {
     let Some(mut rig) = own_roots(SimParams::default()) else { return };
     let strands = strands();
     let motion = Motion::turning(&strands);
-    let desc = SectionDesc::new(&strands, SimParams::default()).with_own_roots();
+    let desc = SectionDesc::new(&strands, SimParams::default()).with_solver(Solver::TressFx).with_own_roots();
     let mut reference = reference::Simulation::new(&[desc]).unwrap();
     for (seconds, dt) in times(30, 60) {
         let (head, roots) = (motion.head(seconds), twisted(&strands, seconds));

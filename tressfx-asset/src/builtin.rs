@@ -173,8 +173,7 @@ impl Builtin {
     /// What the strands collide with: the head, filled with capsules that leave the roots outside, the neck and the
     /// shoulders.
     pub fn capsules(&self) -> Vec<Capsule> {
-        let body = self.body();
-        body.head.inscribed_capsules().into_iter().chain(body.bust).collect()
+        self.body().capsules()
     }
 
     /// The head, neck and shoulders to be drawn under the hair.

@@ -11,6 +11,7 @@ mod known;
 mod measure;
 mod method;
 mod page;
+mod plate;
 mod plot;
 mod truth;
 
@@ -44,6 +45,9 @@ struct Args {
     /// Measure nothing of this: make the plots of docs/motion.md, of the f64 function beside what thin rods are known to do
     #[arg(long, conflicts_with_all = ["check", "pages"])]
     known: bool,
+    /// Measure nothing of this: make the plate of docs/materials.md, of stiffnesses of the published method beside bending lengths
+    #[arg(long, conflicts_with_all = ["check", "pages", "known"])]
+    plate: bool,
     /// The folder with motion.json
     #[arg(long, value_name = "DIR")]
     docs: PathBuf,
@@ -71,6 +75,9 @@ fn main() -> Result<()> {
     let args = Args::parse();
     if args.known {
         return known::write(&args.docs);
+    }
+    if args.plate {
+        return plate::write(&args.docs);
     }
     let extent = if args.quick { Extent::Quick } else { Extent::Full };
     let path = args.docs.join("motion.json");

@@ -154,6 +154,34 @@ impl Clock {
         frame
     }
 
+    /// The same where the head is known within the frame too: at even distances in time, it was at these poses before it came
+    /// to `head`. The sub-steps are those of as many shorter frames, with the shares of the whole frame.
+    ///
+    /// Of a frame without a length, or one that is too long, the poses are not looked at.
+    pub fn advance_along(&mut self, dt: f64, poses: &[Pose], head: Pose) -> FramePlan {
+        if poses.is_empty() || dt <= 0.0 || self.behind + dt > self.params.max_frame {
+            return self.advance(dt, head);
+        }
+        let parts = (poses.len() + 1) as f64;
+        let mut frame = FramePlan::default();
+        for (index, &pose) in poses.iter().chain([&head]).enumerate() {
+            let part = self.advance(dt / parts, pose);
+            if part.reset.is_some() {
+                frame.sub_steps.clear();
+                frame.reset = part.reset;
+            }
+            frame.teleported |= part.teleported;
+            let (before, after) = (index as f64, parts - 1.0 - index as f64);
+            frame.sub_steps.extend(part.sub_steps.into_iter().map(|sub_step| SubStep {
+                shares: sub_step.shares.map(|share| (before + share) / parts),
+                share_of_remaining_frame: sub_step.length
+                    / (sub_step.length / sub_step.share_of_remaining_frame + after * dt / parts),
+                ..sub_step
+            }));
+        }
+        frame
+    }
+
     /// The path of the head in a frame of which `simulated` seconds are simulated.
     fn path(&self, simulated: f64, last: Pose, head: Pose) -> HeadPath {
         let before = self.before.map(|before| before.map(|(head, dt)| EarlierFrame { head, length: dt / simulated }));

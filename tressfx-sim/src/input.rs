@@ -17,6 +17,10 @@ pub struct StepInput<'a> {
     pub dt: f64,
     /// Where the head is at the end of the frame: from the space of the rest pose to the world, in the unit of the file.
     pub head: Pose,
+    /// Where it was before, at even distances in time within the frame: with 60 of all poses a second strands move the same at any frame rate
+    /// below that. Without any, the head goes along the cubic curve through its poses at the ends of this frame and of the two before it.
+    /// Not looked at in a frame that is longer than [`ClockParams::max_frame`](crate::ClockParams::max_frame).
+    pub path: &'a [Pose],
     /// The wind, if any.
     pub wind: Option<Wind>,
     /// What the strands collide with in this frame; no more than the simulation was made for.
@@ -26,7 +30,13 @@ pub struct StepInput<'a> {
 impl<'a> StepInput<'a> {
     /// A frame without wind and colliders.
     pub fn new(dt: f64, head: Pose) -> Self {
-        Self { dt, head, wind: None, colliders: &[] }
+        Self { dt, head, path: &[], wind: None, colliders: &[] }
+    }
+
+    /// The same with a head that is known within the frame too.
+    #[must_use]
+    pub fn with_path(self, path: &'a [Pose]) -> Self {
+        Self { path, ..self }
     }
 
     /// The same in a wind.
@@ -49,7 +59,9 @@ impl<'a> StepInput<'a> {
         if !self.dt.is_finite() {
             return Err(SimError::NonFinite { name: "dt" });
         }
-        check_pose(&self.head, "head.rotation", "head.translation")?;
+        for pose in self.path.iter().chain([&self.head]) {
+            check_pose(pose, "head.rotation", "head.translation")?;
+        }
         self.wind.iter().try_for_each(Wind::validate)?;
         self.colliders.iter().enumerate().try_for_each(|(index, collider)| collider.validate(index))
     }

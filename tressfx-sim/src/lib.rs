@@ -1,10 +1,10 @@
 //! The simulation of hair: kernels (compute shaders), their order, and the same computations in f64 on the CPU as a
 //! reference.
 //!
-//! [`Solver::TressFx`] is the published method of TressFX with what is wrong there mended: Verlet integration with velocity shock
-//! propagation, global and local shape constraints, wind, length constraints, and collision with capsules
-//! ([`reference::tressfx`] says how). [`Solver::Direct`] moves strands as rods instead, all edges of a strand at once
-//! ([`reference::direct`] says how). Sub-steps have a fixed length. [`HairSim`] makes its buffers and pipelines once and then only
+//! [`Solver::Direct`], the default, moves strands as rods that bend, twist and never stretch, all edges of a strand at once
+//! ([`reference::direct`] says how). [`Solver::TressFx`] is the published method of TressFX with what is wrong there mended: Verlet
+//! integration with velocity shock propagation, global and local shape constraints, wind, length constraints, and collision with
+//! capsules ([`reference::tressfx`] says how). Sub-steps have a fixed length. [`HairSim`] makes its buffers and pipelines once and then only
 //! writes passes into a [`PassList`](tressfx_core::pass::PassList). It never names a backend, submits or waits.
 //!
 //! A kernel has one name everywhere. `tressfx`, for example, is the file `shaders/tressfx.wgsl`, the Rust function in
@@ -12,6 +12,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bending_length;
 mod buffers;
 mod clock;
 mod collider;
@@ -20,6 +21,7 @@ mod input;
 mod kernel;
 pub mod metrics;
 mod params;
+mod preset;
 pub mod reference;
 mod rods;
 mod section;
@@ -35,6 +37,7 @@ pub use collider::{CapsuleMotion, Collider, ColliderMotion};
 pub use error::SimError;
 pub use input::StepInput;
 pub use params::{ParamError, SimParams};
+pub use preset::{NoPreset, Preset};
 pub use rods::Standing;
 pub use sim::{HairSim, SectionDesc, StepReport};
 pub use solver::Solver;

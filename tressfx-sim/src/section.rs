@@ -55,7 +55,7 @@ impl SimSection {
     ) -> Result<Self> {
         let buffers = SectionBuffers::new(backend, desc, center)?;
         let passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &buffers, shared }, &desc.params)?;
-        let info = SectionInfo { solver: desc.solver, ..SectionInfo::of(desc.strands) };
+        let info = SectionInfo::new(desc.strands, desc.solver);
         Ok(Self { buffers, info, solver: desc.solver, params: desc.params.clone(), passes })
     }
 

@@ -148,7 +148,7 @@ impl HairSim {
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
-        let plan = self.clock.advance(input.dt, input.head);
+        let plan = self.clock.advance_along(input.dt, input.path, input.head);
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
         }

@@ -15,6 +15,7 @@ use tressfx_core::gpu_struct;
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::strands::Strands;
 
+use crate::bending_length::G;
 use crate::clock::SubStep;
 use crate::params::SimParams;
 use crate::solver::Solver;
@@ -23,7 +24,7 @@ use crate::wind::Wind;
 /// The length of the step for which TressFX states stiffness and damping, s.
 pub const REFERENCE_STEP: f64 = 1.0 / 60.0;
 /// A stiffer local shape counts as this, as in TressFX: short strands would flicker between two states.
-const STIFFEST_LOCAL: f32 = 0.95;
+pub(crate) const STIFFEST_LOCAL: f32 = 0.95;
 
 gpu_struct! {
     /// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one
@@ -110,13 +111,13 @@ pub struct SectionInfo {
 }
 
 impl SectionInfo {
-    /// That of a section of these strands, with the default solver.
-    pub fn of(strands: &Strands) -> Self {
+    /// That of a section of these strands, which this solver moves.
+    pub fn new(strands: &Strands, solver: Solver) -> Self {
         Self {
-            solver: Solver::default(),
             shape: StrandShape::of(strands),
             metres_per_unit: strands.metres_per_unit,
             tip_separation: strands.tip_separation,
+            solver,
         }
     }
 }
@@ -130,7 +131,6 @@ pub fn spring_share(stiffness: f32, length: f64) -> f64 {
 
 /// Bending stiffness over the mass of unit length, units^4/s^2.
 pub(crate) fn bending(params: &SimParams, metres_per_unit: f32) -> f64 {
-    const G: f64 = 9.81;
     G * f64::from(params.bending_length).powi(3) / f64::from(metres_per_unit).powi(4)
 }
 

@@ -3,10 +3,11 @@
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use tressfx_core::shader::Language;
-use tressfx_sim::Solver;
+use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
 use crate::oit::Oit;
@@ -96,6 +97,12 @@ pub(crate) struct Scene {
     /// Parameters of simulation and look
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
+    /// The material of the hair, for the solver `direct`; it replaces what the parameters say
+    #[arg(long, value_name = "NAME", value_parser = presets())]
+    pub(crate) preset: Option<Preset>,
+    /// A `local_stiffness` that a groom was made with for TressFX, as the bending length that is as stiff; it replaces what the parameters say
+    #[arg(long, value_name = "0..1", value_parser = share, conflicts_with = "preset")]
+    pub(crate) local_stiffness: Option<f32>,
     /// Follow strands of each guide; without it, what the file says, or more where a file has few strands
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
@@ -135,6 +142,9 @@ pub(crate) struct Render {
     /// A .png of the last frame, a .gif or .apng of all, or a folder (ending in /) with every frame
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// The first frame that is written where every frame is, from 0; those before it are simulated alone
+    #[arg(long, default_value_t = 0, value_name = "FRAME")]
+    pub(crate) from: u32,
     /// Width and height in pixels
     #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = size)]
     pub(crate) size: [u32; 2],
@@ -193,7 +203,7 @@ pub(crate) struct Shaders {
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
     /// What solves the equations of motion
-    #[arg(long, value_enum, default_value_t = SolverName::Tressfx)]
+    #[arg(long, value_enum, default_value_t = SolverName::Direct)]
     pub(crate) solver: SolverName,
     /// Follow strands of each guide; without it, as `render` has them
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
@@ -291,6 +301,20 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
     numbers.try_into().map_err(|_| format!("{N} numbers between commas are needed, not {count}"))
 }
 
+/// The names of presets, each with what it is.
+fn presets() -> impl TypedValueParser<Value = Preset> {
+    let names = Preset::ALL.map(|preset| PossibleValue::new(preset.name).help(preset.what));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<Preset>())
+}
+
+fn share(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        Ok(share) => Err(format!("{share} is not between 0 and 1")),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
 fn vector(text: &str) -> Result<Vec3, String> {
     numbers(text).map(Vec3::from_array)
 }
@@ -339,6 +363,7 @@ mod tests {
         assert!(vector("1,2").unwrap_err().contains("not 2"));
         assert!(vector("1,2,inf").unwrap_err().contains("not finite"));
         assert!(png("map.jpg").unwrap_err().contains(".png") && png("map.PNG").is_ok());
+        assert!(share("0.5") == Ok(0.5) && share("NaN").unwrap_err().contains("between 0 and 1"));
         assert!(fps("0").unwrap_err().contains("between"));
     }
 }

@@ -19,6 +19,9 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     if args.reference && output.wants_every_frame() {
         bail!("{}: --reference draws one picture, a .png of the last frame", args.out.display());
     }
+    if args.from >= Run::frames(&args.scene) {
+        bail!("--from {}: frames are from 0 to {}", args.from, Run::frames(&args.scene) - 1);
+    }
     let mesh = args.mesh.as_ref().map(Mesh::read).transpose()?;
     let mut run = Run::new(&args.scene)?;
     let mut studio = Studio::new(&mut run, args, mesh)?;
@@ -58,7 +61,7 @@ fn check_whole(args: &Render, drawn: &RenderStats) -> Result<()> {
 /// Simulates a frame, and draws it if it is wanted.
 fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output, frame: u32) -> Result<()> {
     let last = frame + 1 == Run::frames(&args.scene);
-    let wanted = !args.reference && (output.wants_every_frame() || last);
+    let wanted = !args.reference && (last || (output.wants_every_frame() && frame >= args.from));
     // Times of one frame say little: whoever asks for figures gets every frame drawn.
     let measured = args.scene.stats.is_some() || args.scene.profile || args.scene.trace.is_some();
     let draw = wanted || (measured && !args.reference);

@@ -8,8 +8,9 @@ use tressfx_core::backend::Caps;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
+use tressfx_sim::bending_length::of_local_stiffness;
 use tressfx_sim::metrics::{self, EdgeError};
-use tressfx_sim::{Collider, HairSim, SectionDesc, Solver, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
 use crate::backend;
 use crate::cli::{self, BackendName};
@@ -55,6 +56,29 @@ fn solver(args: &cli::Scene, strands: &Strands, caps: &Caps) -> Solver {
     if args.frames > 0 && has_room { Solver::Direct } else { Solver::TressFx }
 }
 
+/// The parameters of a section, with the material that was asked for.
+fn material(args: &cli::Scene, strands: &Strands, params: SimParams) -> SimParams {
+    let Some(local_stiffness) = args.local_stiffness else {
+        return args.preset.map_or(params.clone(), |preset| preset.on(params));
+    };
+    let lengths = strands.rest_lengths.chunks(strands.vertices as usize).map(|edges| edges.iter().sum::<f32>());
+    let length = median(lengths.collect()) * strands.metres_per_unit;
+    let bending_length = of_local_stiffness(local_stiffness, strands.vertices, length);
+    eprintln!(
+        "{}: a local stiffness of {local_stiffness} is a bending length of {:.1} mm, in strands of {:.0} mm and {} vertices",
+        strands.name,
+        1e3 * bending_length,
+        1e3 * length,
+        strands.vertices
+    );
+    SimParams { bending_length, ..params }
+}
+
+fn median(mut numbers: Vec<f32>) -> f32 {
+    numbers.sort_by(f32::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Says which strands were made stiffer so that they stand in the pose of their file.
 fn say_standing(sim: &HairSim, section: usize, strands: &Strands) {
     let Some(standing) = sim.standing(section) else { return };
@@ -81,14 +105,16 @@ impl Run {
             .enumerate()
             .map(|(index, strands)| {
                 let solver = solver(args, strands, backend.caps());
-                SectionDesc::new(strands, params.sim(index).clone()).with_solver(solver)
+                SectionDesc::new(strands, material(args, strands, params.sim(index).clone())).with_solver(solver)
             })
             .collect();
         let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());
         let mut uploads = PassList::new();
         let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
         backend.run(&uploads)?;
-        sim.set_clock_params(params.clock)?;
+        // A frame of any length is simulated whole, with what the one before it left over.
+        let longest = 1.0 / args.fps + params.clock.sub_step;
+        sim.set_clock_params(ClockParams { max_frame: params.clock.max_frame.max(longest), ..params.clock })?;
         groom.sections.iter().enumerate().for_each(|(index, strands)| say_standing(&sim, index, strands));
         let wind = match (args.wind, params.wind) {
             (Some(velocity), Some(wind)) => Some(Wind { velocity, ..wind }),
@@ -116,11 +142,10 @@ impl Run {
             return Ok(list);
         }
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
-        for part in 1..=parts as u32 {
-            let head = self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
-            let input = StepInput::new(1.0 / (args.fps * parts), head).with_colliders(&self.colliders);
-            self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
-        }
+        let at = |part: u32| self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
+        let (path, head): (Vec<_>, _) = ((1..parts as u32).map(at).collect(), at(parts as u32));
+        let input = StepInput::new(1.0 / args.fps, head).with_path(&path).with_colliders(&self.colliders);
+        self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
         self.frame += 1;
         Ok(list)
     }

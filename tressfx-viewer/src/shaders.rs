@@ -13,7 +13,7 @@ use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
 use tressfx_render::{HairRenderer, RenderDesc};
-use tressfx_sim::{HairSim, SectionDesc};
+use tressfx_sim::{HairSim, SectionDesc, SimParams};
 
 use crate::cli;
 use crate::groom::Groom;
@@ -119,7 +119,9 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
-    let section = SectionDesc::new(&groom.sections[0], params.sim(0).clone()).with_solver(args.solver.solver());
+    // What strands want at rest takes time and changes no kernel.
+    let params = SimParams { sag_free: 0.0, ..params.sim(0).clone() };
+    let section = SectionDesc::new(&groom.sections[0], params).with_solver(args.solver.solver());
     let sections = [section.clone(), section.with_own_roots()];
     HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
     let technique = args.oit.technique()?;

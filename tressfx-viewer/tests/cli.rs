@@ -244,6 +244,11 @@ fn animations_hold_every_frame() {
     let gif = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(std::fs::read(folder.join("a.gif")).unwrap()));
     let frames = image::AnimationDecoder::into_frames(gif.unwrap()).collect_frames().unwrap();
     assert_eq!(frames.len(), 4, "a GIF shows every second of 60 frames a second");
+    render(&folder, &["--out", "late.apng", "--from", "5"]);
+    let late = png::Decoder::new(std::io::Cursor::new(std::fs::read(folder.join("late.apng")).unwrap()));
+    assert_eq!(late.read_info().unwrap().info().animation_control().unwrap().num_frames, 3);
+    let (message, _) = fails(&folder, &[&["render"], &SMALL[..], &["--out", "a.gif", "--from", "8"]].concat());
+    assert!(message.contains("--from 8: frames are from 0 to 7"), "{message}");
     let apng = png::Decoder::new(std::io::Cursor::new(std::fs::read(folder.join("a.apng")).unwrap()));
     let reader = apng.read_info().unwrap();
     assert_eq!(reader.info().animation_control().unwrap().num_frames, 8);
@@ -302,4 +307,17 @@ fn rods_say_which_stand_and_refuse_a_material_that_is_none() {
     std::fs::write(folder.join("soft.toml"), "[sim]\nbending_length = 0.0\n").unwrap();
     let (message, _) = fails(&folder, &[&simulate[..], &["--params", "soft.toml"]].concat());
     assert!(message.contains("parameter bending_length = 0 must be from 0.002 to 10"), "{message}");
+    let pose = |words: &[&str]| {
+        let shaken = ["--motion", "shake"];
+        let output = tressfx(&folder, &[&simulate[..], &shaken, words].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        (std::fs::read(folder.join("pose.tfx")).unwrap(), said)
+    };
+    let (stiff, _) = pose(&["--preset", "mohawk"]);
+    let (soft, said) = pose(&["--local-stiffness", "0.5"]);
+    assert!(said.contains("a local stiffness of 0.5 is a bending length of") && said.contains("12 vertices"), "{said}");
+    assert!(stiff != soft && stiff != pose(&[]).0, "materials move in their own ways");
+    let (message, _) = fails(&folder, &[&simulate[..], &["--preset", "bald"]].concat());
+    assert!(message.contains("bald") && message.contains("sprayed"), "{message}");
 }

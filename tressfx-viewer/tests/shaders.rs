@@ -21,20 +21,20 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
 const VARIANTS: [&[&str]; 18] = [
-    &[],
-    &["builtin:fur:40:3", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
-    &["pinned.tfx", "--oit-k", "32", "--oit-tail", "unshaded"],
+    &["builtin:long:40:8"],
+    &["builtin:long:40:8", "--solver", "tressfx"],
+    &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
+    &["pinned.tfx", "--solver", "tressfx", "--oit-k", "32", "--oit-tail", "unshaded"],
     &["--oit-k", "0", "--oit-tail", "none"],
-    &["pinned.tfx", "--params", "bare.toml"],
+    &["pinned.tfx", "--solver", "tressfx", "--params", "bare.toml"],
     &["--fill", "raster"],
     &["--oit-cap", "8"],
     &["--oit-cap", "2", "--fill", "raster"],
     &["--oit", "shortcut", "--oit-k", "1"],
     &["--oit", "shortcut", "--oit-ordered", "--oit-k", "8"],
     &["--oit", "shortcut", "--oit-ordered", "--fill", "raster"],
-    &["builtin:long:40:8", "--solver", "direct"],
-    &["pinned.tfx", "--solver", "direct"],
-    &["builtin:long:40:8", "--solver", "direct", "--params", "rods.toml"],
+    &["pinned.tfx"],
+    &["builtin:long:40:8", "--params", "rods.toml"],
     &["--oit-cap", "8", "--hair-output"],
     &["--oit", "shortcut", "--hair-output"],
     &["--oit", "tiles"],
@@ -217,7 +217,7 @@ fn compilers_refuse_a_broken_kernel() {
 #[test]
 fn one_kernel_is_chosen_by_its_name() {
     let folder = folder("chosen");
-    let entries = emit(&folder, &["builtin:fur:40:3", "--kernel", "hair.sim.tressfx"]);
+    let entries = emit(&folder, &["builtin:fur:40:3", "--solver", "tressfx", "--kernel", "hair.sim.tressfx"]);
     let files: Vec<_> = entries.iter().map(|entry| file_of(entry, "hlsl")).collect();
     let expected = ["", ".roots"].map(|roots| format!("hair.sim.tressfx.capsules.global_shape{roots}.comp.hlsl"));
     assert_eq!(files, expected);
@@ -231,7 +231,7 @@ fn one_kernel_is_chosen_by_its_name() {
         step["fields"][2],
         serde_json::json!({ "name": "center_displacement", "type": "vec3<f32>", "offset": 32 })
     );
-    let output = tressfx(&folder, &["--kernel", "hair.sim.tresfx", "--out", "none"]);
+    let output = tressfx(&folder, &["--solver", "tressfx", "--kernel", "hair.sim.tresfx", "--out", "none"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(

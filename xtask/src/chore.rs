@@ -9,13 +9,25 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &[&str]); 5] = [
-    ("long.png", &["builtin:long", "--motion", "turn", "--frames", "90"]),
-    ("straight.png", &["builtin:straight", "--frames", "60"]),
-    ("wavy.png", &["builtin:wavy", "--frames", "60"]),
-    ("curly.png", &["builtin:curly", "--frames", "60"]),
-    ("fur.png", &["builtin:fur", "--wind", "3,0,0", "--frames", "60"]),
+const PICTURES: [(&str, &str); 11] = [
+    ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
+    ("straight.png", "builtin:straight --frames 60 --size 960x540"),
+    ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
+    ("curly.png", "builtin:curly --frames 60 --size 960x540"),
+    ("fur.png", "builtin:fur --wind 3,0,0 --frames 60 --size 960x540"),
+    ("preset-baby.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset baby"),
+    ("preset-medium.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset medium"),
+    ("preset-sprayed.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset sprayed"),
+    ("preset-mohawk.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset mohawk"),
+    // Whole periods of the motion, after the first.
+    ("long-turn.gif", "builtin:long:2000 --follow 1 --motion turn --fps 20 --from 50 --frames 100 --size 256x256"),
+    (
+        "mohawk-shake.gif",
+        "TRESSFX_ASSETS/tressfx41_ratboy/Ratboy_mohawk.tfx --motion shake --fps 24 --from 48 --frames 80 --size 300x300",
+    ),
 ];
+/// Where real grooms are, in the words above and in the environment.
+const ASSETS: &str = "TRESSFX_ASSETS";
 
 /// Runs a command to its end.
 pub(crate) fn run(command: &mut Command) -> Result<(), String> {
@@ -67,16 +79,22 @@ pub(crate) fn demo() -> Result<(), String> {
     Ok(())
 }
 
-/// Makes the pictures of the documentation anew.
+/// Makes the pictures of the documentation anew; those of real grooms where they are.
 pub(crate) fn docs() -> Result<(), String> {
     let tressfx = tressfx("release")?;
     driver::ensure(&tressfx)?;
     let folder = root().join("docs").join("pictures");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     for (picture, words) in PICTURES {
-        println!("tressfx render {} --size 960x540 --out docs/pictures/{picture}", words.join(" "));
+        println!("tressfx render {words} --out docs/pictures/{picture}");
+        let assets = std::env::var(ASSETS);
+        if words.contains(ASSETS) && assets.is_err() {
+            println!("  left as it is: {ASSETS} is not set");
+            continue;
+        }
+        let words = words.split(' ').map(|word| word.replace(ASSETS, assets.as_deref().unwrap_or_default()));
         let mut command = Command::new(&tressfx);
-        run(command.arg("render").args(words).args(["--size", "960x540", "--out"]).arg(folder.join(picture)))?;
+        run(command.arg("render").args(words).arg("--out").arg(folder.join(picture)))?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use tressfx_core::strands::Strands;
 use tressfx_render::Material;
 use tressfx_sim::reference::{self, Guide};
 use tressfx_sim::step::{SectionInfo, Step};
-use tressfx_sim::{SectionDesc, SimParams, Stage as Kernel, SubStep, Wind};
+use tressfx_sim::{SectionDesc, SimParams, Solver, Stage as Kernel, SubStep, Wind};
 
 use super::subject::Subject;
 use crate::render::{Groom, Screen};
@@ -39,7 +39,12 @@ fn step(strands: &Strands) -> Step {
         center_displacement: Vec3::new(0.0003, -0.0004, 0.0005),
         ..SubStep::at_rest(1.0 / 240.0, rotation)
     };
-    Step::new(&params(), &SectionInfo::of(strands), &sub_step, Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))))
+    Step::new(
+        &params(),
+        &SectionInfo::new(strands, Solver::TressFx),
+        &sub_step,
+        Some(&Wind::new(Vec3::new(-3.0, 1.0, 2.0))),
+    )
 }
 
 /// Random strands that have moved for a while, a step for them, and capsules relative to their centre.
@@ -139,7 +144,8 @@ pub(super) fn a_second_is_as_in_f64(t: &mut Subject) {
     let strands = random_strands(64, 16, 0, 3);
     let (motion, params) = (Motion::turning(&strands), SimParams::default());
     let mut rig = Rig::new(t.another(), vec![(strands.clone(), params.clone())], &[]);
-    let mut reference = reference::Simulation::new(&[SectionDesc::new(&strands, params)]).expect("fine");
+    let mut reference =
+        reference::Simulation::new(&[SectionDesc::new(&strands, params).with_solver(Solver::TressFx)]).expect("fine");
     rig.play(&motion, 1.0, 60);
     for frame in 0..=60 {
         let dt = if frame == 0 { 0.0 } else { 1.0 / 60.0 };

@@ -56,6 +56,11 @@ impl Body {
         Vec3::new(-25.0 * point.x, 0.0, 110.0 * (target - point.z))
     }
 
+    /// What strands collide with: the head, filled with capsules that leave the roots outside, the neck and the shoulders.
+    pub(super) fn capsules(&self) -> Vec<Capsule> {
+        self.head.inscribed_capsules().into_iter().chain(self.bust.iter().copied()).collect()
+    }
+
     /// The point, moved out of everything solid.
     pub(super) fn clear(&self, point: Vec3) -> Vec3 {
         self.push_out_of_solids(point, CLEARANCE)

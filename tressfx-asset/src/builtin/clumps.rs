@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use glam::{Quat, Vec3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg32;
+use tressfx_core::shape::Capsule;
 
 use super::body::Body;
 use super::growth;
@@ -15,6 +16,10 @@ use super::style::{Look, Wave};
 const MOST_CLUMPS: usize = 600;
 /// One strand in so many keeps to itself.
 const FLYAWAY: f32 = 0.03;
+/// Shares of the pull to its clump that are tried on a strand.
+const PULLS: [f32; 4] = [1.0, 0.6, 0.3, 0.0];
+/// An edge is looked at between so many parts.
+const SAMPLES: u16 = 8;
 /// Random streams of the clumps begin here; those of the strands at 0.
 const CLUMP_STREAMS: u64 = 1 << 32;
 
@@ -39,19 +44,33 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
         Clump { root: root.position, axes: axes(&points), points, phase, pitch }
     };
     let clumps: Vec<Clump> = roots[..count].iter().enumerate().map(clump).collect();
+    let capsules = body.capsules();
     let mut all = Vec::with_capacity(roots.len() * vertices);
     for (index, root) in roots.iter().enumerate() {
         let mut random = Pcg32::new(seed, index as u64);
-        let mut points = growth::grow(look, body, root, vertices, &mut random);
+        let own = growth::grow(look, body, root, vertices, &mut random);
         let clump = nearest(&clumps, look, root);
-        if random.random::<f32>() > FLYAWAY {
-            draw_to(&mut points, clump, look);
-        }
-        wind(&mut points, &look.wave, clump, &mut random);
-        let tail = points[1..].iter().map(|&point| body.clear(point).to_array());
-        all.extend(std::iter::once(root.position.to_array()).chain(tail));
+        let pull = if random.random::<f32>() > FLYAWAY { look.clumping } else { 0.0 };
+        let finish = |pull: f32| {
+            let mut points = own.clone();
+            draw_to(&mut points, clump, look, pull);
+            wind(&mut points, &look.wave, clump, &mut random.clone());
+            points[1..].iter_mut().for_each(|point| *point = body.clear(*point));
+            points
+        };
+        // A lock on the other side of a shoulder would draw a strand through it: the less it is drawn, the more it goes around.
+        let points = PULLS.into_iter().map(|share| finish(share * pull)).find(|points| !is_cut(points, &capsules));
+        all.extend(points.unwrap_or(own).iter().map(Vec3::to_array));
     }
     all
+}
+
+/// Whether a strand goes through any of these.
+fn is_cut(points: &[Vec3], capsules: &[Capsule]) -> bool {
+    let inside = |point: Vec3| capsules.iter().any(|capsule| capsule.distance(point) < 0.0);
+    let samples =
+        |edge: &[Vec3]| (1..SAMPLES).any(|i| inside(edge[0].lerp(edge[1], f32::from(i) / f32::from(SAMPLES))));
+    points.windows(2).any(samples)
 }
 
 /// The clump whose root is nearest, on the same side of the parting.
@@ -64,14 +83,14 @@ fn nearest<'a>(clumps: &'a [Clump], look: &Look, root: &Root) -> &'a Clump {
     clumps.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&clumps[0])
 }
 
-/// Draws a strand to the middle of its clump, the more the nearer to the tip.
-fn draw_to(points: &mut [Vec3], clump: &Clump, look: &Look) {
+/// Draws a strand to the middle of its clump, the more the nearer to the tip; there by the share `most`.
+fn draw_to(points: &mut [Vec3], clump: &Clump, look: &Look, most: f32) {
     let offset = points[0] - clump.root;
     let last = (points.len() - 1) as f32;
     for (vertex, (point, &middle)) in points.iter_mut().zip(&clump.points).enumerate() {
         let s = vertex as f32 / last;
         let near = (s / look.clump_onset).min(1.0);
-        let pull = look.clumping * near * near * (3.0 - 2.0 * near);
+        let pull = most * near * near * (3.0 - 2.0 * near);
         let width = 1.0 + (look.clump_width - 1.0) * s;
         *point = point.lerp(middle + offset * width, pull);
     }

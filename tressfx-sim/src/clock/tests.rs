@@ -161,3 +161,34 @@ proptest! {
         prop_assert!((clock.time() - sub_steps as f64 / 120.0).abs() < 1e-9);
     }
 }
+
+#[test]
+fn poses_within_a_frame_are_shorter_frames_with_the_shares_of_the_whole() {
+    let (mut whole, mut parts) = (clock(), clock());
+    for frame in 0..20_u8 {
+        let at = |third: u8| moved(0.02 * (f32::from(3 * frame + third) * 0.2).sin());
+        let along = whole.advance_along(1.0 / 20.0, &[at(1), at(2)], at(3));
+        let one_by_one: Vec<_> = (1..=3).flat_map(|third| parts.advance(1.0 / 60.0, at(third)).sub_steps).collect();
+        assert_eq!(along.sub_steps.len(), 6);
+        for (index, (sub_step, expected)) in along.sub_steps.iter().zip(&one_by_one).enumerate() {
+            assert!((sub_step.shares[1] - (index + 1) as f64 / 6.0).abs() < 1e-9, "{:?}", sub_step.shares);
+            assert!((sub_step.share_of_remaining_frame - 1.0 / (6 - index) as f64).abs() < 1e-9);
+            let same = SubStep {
+                shares: expected.shares,
+                share_of_remaining_frame: expected.share_of_remaining_frame,
+                ..*sub_step
+            };
+            assert!((same.time - expected.time).abs() < 1e-12 && SubStep { time: expected.time, ..same } == *expected);
+        }
+    }
+}
+
+#[test]
+fn a_teleport_within_a_frame_resets_there_and_what_is_too_long_is_cut() {
+    let mut clock = clock();
+    let frame = clock.advance_along(1.0 / 20.0, &[moved(0.0), moved(100.0)], moved(100.0));
+    assert!(frame.teleported && frame.reset.is_some());
+    assert_eq!(frame.sub_steps.len(), 4, "those from the teleport on");
+    let frame = clock.advance_along(1.0, &[moved(50.0)], moved(100.0));
+    assert!((frame.dropped - 0.9).abs() < 1e-9 && !frame.teleported && frame.sub_steps.len() == 12, "{frame:?}");
+}

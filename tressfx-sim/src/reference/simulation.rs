@@ -75,7 +75,7 @@ impl<'a> Simulation<'a> {
     /// Something in the input that is not finite or out of range.
     pub fn step(&mut self, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
-        let plan = self.clock.advance(input.dt, input.head);
+        let plan = self.clock.advance_along(input.dt, input.path, input.head);
         let center = self.clock.center();
         for (index, section) in self.sections.iter_mut().enumerate() {
             if let Some(rotation) = plan.reset {
@@ -142,7 +142,7 @@ impl<'a> Simulation<'a> {
 impl<'a> Section<'a> {
     fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
-        let info = SectionInfo { solver: desc.solver, ..SectionInfo::of(strands) };
+        let info = SectionInfo::new(strands, desc.solver);
         let rod = |guide: usize| {
             let (rest, _) = rod_rest(strands, &desc.params, guide);
             let rod = Rod::at_rest(&rest, DQuat::IDENTITY);
