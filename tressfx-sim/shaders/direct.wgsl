@@ -3,7 +3,7 @@
 // times the square of the sub-step.
 
 import package::grid::{GROUP, thread_index};
-import package::joint::{Stiffness, joint_between, outer, scaled_identity, stiffness_of, torque_of};
+import package::joint::{Stiffness, joint_between, lag_of, outer, scaled_identity, stiffness_of, torque_of};
 import package::rod::{
     BY_PARENT, BY_PLACE, FRAME, LAST_STRAIN, LAST_VELOCITY, MOVED, MOVING, NOW, STRAIN, Strand, VELOCITY, along, frame_at_rest,
     half_turn, length_of, positions, rest, rods, slot, strand_of,
@@ -216,8 +216,9 @@ fn eliminate(strand: Strand, touches: bool) {
         let span = max(0.5 * (joined + length), strand.shortest_span);
         let joint = joint_between(parent, half_turn(strand, edge), frame);
         let bending = strand.bending / span * strand.length * strand.length;
-        let stiffness = Stiffness(bending, step.twist_ratio, step.internal_damping / strand.length);
-        let own = torque_of(joint, stiffness, past_strain(strand, edge, joint.strain));
+        let past = past_strain(strand, edge, joint.strain);
+        let stiffness = Stiffness(bending, step.twist_ratio, lag_of(joint, step.internal_damping / strand.length, past));
+        let own = torque_of(joint, stiffness, past);
         let spring = stiffness_of(joint, stiffness);
 
         // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
