@@ -32,6 +32,9 @@ const ANOTHER_ROUND: f32 = 2.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
 const SHORT: f32 = 1.0 / 120.0;
 
+/// An edge whose ends move against each other by more than this share of its length is not aimed: it could point anywhere.
+const NO_AIM: f32 = 0.5;
+
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
 const TOUCHING_ROUNDS: u32 = 4u;
 /// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
@@ -108,7 +111,9 @@ fn aim(strand: Strand) {
         var now = frame_at_rest(strand, edge);
         if (edge >= strand.held) {
             let start = select(begin, moving, edge == strand.held);
-            now = turned(frame, here, direction_or(length * here + to - start, here));
+            let apart = to - start;
+            let direction = direction_or(length * here + apart, here);
+            now = turned(frame, here, select(here, direction, dot(apart, apart) <= NO_AIM * NO_AIM * length * length));
         }
         // From two directions, not from two places, which would lose more.
         moving += length * (along(now) - here);
