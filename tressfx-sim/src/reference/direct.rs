@@ -16,6 +16,7 @@ mod rest;
 mod stand;
 
 use glam::{DMat3, DQuat, DVec3};
+use tressfx_core::strands::shortest_turn;
 
 pub use contact::{Obstacle, Touch};
 pub use guide::direct_guide;
@@ -295,7 +296,7 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
             if there.distance(rest.lengths[edge] * here) > NO_AIM * rest.lengths[edge] {
                 return rod.frames[edge];
             }
-            (DQuat::from_rotation_arc(here, there.normalize()) * rod.frames[edge]).normalize()
+            (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
         })
         .collect();
     rod.frames = frames;
