@@ -10,7 +10,7 @@ import package::rod::{
 };
 import package::root::shape_of;
 import package::step::step;
-import package::vector::{after, direction_or, is_finite, turned};
+import package::vector::{after, direction_or, is_finite, turned_by};
 @if(contacts)
 import package::rod::{edge_of, last_touch};
 @if(contacts)
@@ -109,14 +109,22 @@ fn aim(strand: Strand) {
         let here = along(frame);
         let to = step.length * rods[slot(strand, edge + 1u, VELOCITY)].xyz;
         var now = frame_at_rest(strand, edge);
+        var by = along(now) - here;
         if (edge >= strand.held) {
             let start = select(begin, moving, edge == strand.held);
             let apart = to - start;
-            let direction = direction_or(length * here + apart, here);
-            now = turned(frame, here, select(here, direction, dot(apart, apart) <= NO_AIM * NO_AIM * length * length));
+            now = frame;
+            by = vec3(0.0);
+            if (dot(apart, apart) < NO_AIM * NO_AIM * length * length) {
+                let there = length * here + apart;
+                let size = sqrt(dot(there, there));
+                // By how much the distance of the ends grows; from their difference it would be rounding.
+                let stretch = dot(apart, length * here + there) / (length + size);
+                by = (apart - stretch * here) / size;
+                now = normalize(after(vec4(cross(here, by), 2.0 + dot(here, by)), frame));
+            }
         }
-        // From two directions, not from two places, which would lose more.
-        moving += length * (along(now) - here);
+        moving += length * by;
         begin = to;
         rods[slot(strand, edge, NOW)] = now;
         rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
@@ -277,6 +285,7 @@ fn substitute(strand: Strand) -> f32 {
     var shift = vec3(0.0);
     var parent = vec3(0.0);
     var moving = rods[slot(strand, strand.held, MOVING)].xyz;
+    var begin = moving;
     var longest = 0.0;
     for (var edge = strand.held; edge < strand.edges; edge++) {
         let length = length_of(strand, edge);
@@ -294,9 +303,15 @@ fn substitute(strand: Strand) -> f32 {
         rotation *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
         longest = max(longest, min(size, LONGEST_TURN));
         let frame = rods[slot(strand, edge, NOW)];
-        let now = normalize(after(rotation_by(rotation), frame));
-        shift += length * cross(rotation, along(frame));
-        moving += length * (along(now) - along(rods[slot(strand, edge, FRAME)]));
+        let here = along(frame);
+        let turn = rotation_by(rotation);
+        let now = normalize(after(turn, frame));
+        shift += length * cross(rotation, here);
+        // From the rotation, not from the frames before and after it: in short sub-steps those differ by little more than rounding, and
+        // a strand would get its speed from that.
+        let end = rods[slot(strand, edge + 1u, MOVING)].xyz;
+        moving += (end - begin) + length * turned_by(turn, here);
+        begin = end;
         rods[slot(strand, edge, NOW)] = now;
         rods[slot(strand, edge + 1u, MOVING)] = vec4(moving, 0.0);
         parent = rotation;

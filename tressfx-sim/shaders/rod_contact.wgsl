@@ -4,7 +4,7 @@
 import package::capsule::{GpuCapsule, GpuCapsuleMotion};
 import package::joint::{outer, scaled_identity};
 import package::step::step;
-import package::vector::{DOWN, direction_or, rotate, rotate_back};
+import package::vector::{DOWN, direction_or, rotate, rotate_back, turned_by};
 
 /// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
 @group(0) @binding(7) var<storage, read> capsules: array<GpuCapsule>;
@@ -202,12 +202,6 @@ fn surface_bound(place: vec3<f32>, reach: f32) -> f32 {
 fn taper(capsule: GpuCapsule) -> f32 {
     let axis = distance(capsule.a, capsule.b);
     return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
-}
-
-/// By what a rotation moves a point.
-fn turned_by(rotation: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
-    let t = 2.0 * cross(rotation.xyz, point);
-    return rotation.w * t + cross(rotation.xyz, t);
 }
 
 /// Where the edge first comes to the surface on its way (conservative advancement), or where it gets to.

@@ -293,7 +293,7 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
             let from = if edge == rest.held { held } else { free(edge) };
             let here = rod.frames[edge] * DVec3::Z;
             let there = free(edge + 1) - from;
-            if there.distance(rest.lengths[edge] * here) > NO_AIM * rest.lengths[edge] {
+            if there.distance(rest.lengths[edge] * here) >= NO_AIM * rest.lengths[edge] {
                 return rod.frames[edge];
             }
             (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
