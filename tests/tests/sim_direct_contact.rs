@@ -162,7 +162,7 @@ fn strands_stay_on_a_slope_until_friction_yields() {
         let Some([creep, down]) = on_slope(vertices, 20.0) else { return };
         let [_, slid] = on_slope(vertices, 25.0).unwrap();
         println!("{vertices} vertices: 20 degrees {creep:.1e} m/s, {down:.1e} m down; 25 degrees {slid:.2} m down");
-        // A single edge from a root on the surface trembles instead of sliding, at 1/120 s in f64 as well: an open fault.
+        // A single edge from a root on the surface hops on the spot instead of sliding, in f64 too: an open fault.
         let slides = vertices == 2 || slid > 0.08;
         assert!(creep < 1e-6 && down < 3e-3 && slides, "{vertices}: {creep:e} {down:e} {slid}");
     }

@@ -5,8 +5,9 @@ mod support;
 
 use glam::{DVec3, Quat, Vec3, Vec4};
 use tressfx_conformance::sim::{
-    Motion, REAL, Rig, random_asset, random_strands, real, strand_errors, strands_of, wide, worst,
+    Motion, REAL, Random, Rig, random_asset, random_strands, real, strand_errors, strands_of, wide, worst,
 };
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_sim::reference::{self, Guide};
@@ -216,6 +217,26 @@ fn tangents_where_edges_have_no_length() {
             assert!(error < 1e-4, "{tip_separation}: strand {strand} vertex {vertex}: {tangent}, not {expected}");
         }
     }
+}
+
+/// Edges of a micrometre among longer ones point anywhere from one sub-step to the next, all but backwards too. There the length of the
+/// turn from one direction to another is mostly rounding, if it follows from their dot product.
+#[test]
+fn strands_that_fold_back_on_themselves_stay_finite() {
+    let mut random = Random::new(1);
+    let mut points = Vec::new();
+    for _ in 0..256 {
+        let mut place = 0.1 * random.vector();
+        for vertex in 0..64 {
+            points.push(place.to_array());
+            place += random.vector() * if vertex % 4 == 0 { 1e-2 } else { 1e-6 };
+        }
+    }
+    let asset = HairAsset::new("folded", AssetFormat::Builtin, points, vec![64; 256]);
+    let Some(mut rig) = rig(strands_of(asset, 0), SimParams::default(), &[]) else { return };
+    let motion = Motion::wild(&rig.strands[0]);
+    rig.play(&motion, 1.0, 60);
+    assert_eq!(rig.non_finite(), 0);
 }
 
 #[test]

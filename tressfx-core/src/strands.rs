@@ -25,6 +25,7 @@ use resample::Strand;
 pub use bounds::Bounds;
 pub use center::relative_to;
 pub use error::StrandsError;
+pub use frames::shortest_turn;
 pub use options::{MAX_FOLLOWS, StrandOptions};
 pub use units::metres_per_unit;
 

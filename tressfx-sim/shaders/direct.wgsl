@@ -6,12 +6,12 @@ import package::eliminate::{Begin, eliminate, hold_place, hold_stiffness};
 import package::grid::{GROUP, thread_index};
 import package::joint::joint_between;
 import package::rod::{
-    BEGIN, GUESS, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, frame_slot, half_turn,
+    BEGIN, FRAME, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, half_turn,
     moved_slot, packed_marks, positions, rest, rest_before, rods, slot, strand_of,
 };
 import package::root::shape_of;
 import package::step::step;
-import package::substitute::{Round, Start, aim, aim_again, substitute};
+import package::substitute::{Aimed, Round, Start, aim, aim_again, keep_aim, substitute};
 import package::vector::is_finite;
 @if(contacts)
 import package::rod_touch::{Range, note_touches, surface_way};
@@ -60,8 +60,8 @@ fn rest_again(strand: Strand) {
         for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0, 0.0, 0.0, vertex.w); }
         if (i > 0u) {
             let frame = frame_at_rest(strand, i);
-            rods[frame_slot(strand, i, 0u)] = frame;
-            rods[slot(strand, i, GUESS)] = frame;
+            rods[slot(strand, i, FRAME)] = frame;
+            keep_aim(strand, i, 0.0, Aimed(frame, vec3(0.0)));
         }
     }
     rods[slot(strand, 0u, BEGIN)] = vec4(0.0, 0.0, 0.0, packed_marks(Marks(strand.turn, false, false, false)));
@@ -85,11 +85,11 @@ fn carry_held(strand: Strand) -> Start {
         let length = rest_before(strand, vertex).w;
         start.parent = frame_at_rest(strand, vertex);
         let axis = along(start.parent);
-        start.moving += length * (axis - along(rods[frame_slot(strand, vertex, 1u)]));
+        start.moving += length * (axis - along(rods[slot(strand, vertex, FRAME)]));
         start.place += length * axis;
         let mass = rods[moved_slot(strand, vertex, 1u)].w;
         rods[moved_slot(strand, vertex, 0u)] = vec4(start.moving, mass);
-        rods[frame_slot(strand, vertex, 0u)] = start.parent;
+        rods[slot(strand, vertex, FRAME)] = start.parent;
         positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + start.place, mass);
     }
     return start;
@@ -98,16 +98,15 @@ fn carry_held(strand: Strand) -> Start {
 /// What the first round begins with. Of the guess only the first free edge asks where the root is.
 fn first_begin(strand: Strand, start: Start) -> Begin {
     let vertex = strand.held + 1u;
-    let frame = rods[frame_slot(strand, vertex, 1u)];
+    let frame = rods[slot(strand, vertex, FRAME)];
     let moved = rods[moved_slot(strand, vertex, 1u)].xyz;
     let before = rods[moved_slot(strand, vertex, 2u)].xyz;
     let length = rest_before(strand, vertex).w;
-    let guess = aim(frame, length, strand.speed.x * moved + strand.speed.y * before - start.moving);
-    rods[slot(strand, vertex, GUESS)] = guess;
+    let aimed = aim(frame, length, strand.speed.x * moved + strand.speed.y * before - start.moving);
     var begin: Begin;
     begin.is_first_round = true;
     begin.parent = start.parent;
-    begin.moving = start.moving + length * (along(guess) - along(frame)) + rods[slot(strand, 0u, BEGIN)].xyz;
+    begin.moving = start.moving + keep_aim(strand, vertex, length, aimed) + rods[slot(strand, 0u, BEGIN)].xyz;
     let tip = positions[strand.edges * step.strands + strand.guide].xyz;
     begin.place = tip - step.center_displacement + begin.moving - strand.root_now;
     @if(contacts) {
@@ -164,7 +163,7 @@ fn store_strains(strand: Strand, keep: bool) {
     @if(internal_damping) {
         var parent = strand.root.rotation;
         for (var vertex = 1u; vertex < step.vertices; vertex++) {
-            let frame = rods[frame_slot(strand, vertex, 0u)];
+            let frame = rods[slot(strand, vertex, FRAME)];
             let last = rods[slot(strand, vertex, STRAIN)];
             let strain = joint_between(parent, half_turn(rest_before(strand, vertex)), frame).strain;
             rods[slot(strand, vertex, LAST_STRAIN)] = vec4(select(strain, last.xyz, keep), 0.0);

@@ -2,7 +2,7 @@
 // the edge and all beyond want of them. That is half of a quadratic function of the displacement of a vertex and of the rotation of
 // the edge before it.
 
-import package::joint::{Stiffness, by_spring, joint_between, spring_of, stiffness_of, torque_by, torque_of};
+import package::joint::{Stiffness, by_spring, joint_between, lag_of, spring_of, stiffness_of, torque_by, torque_of};
 import package::rod::{
     HOLDING, LAST_STRAIN, LEFT, Row, STRAIN, Strand, along, half_turn, rest, rods, row_of, slot,
 };
@@ -126,7 +126,7 @@ fn eliminate(strand: Strand, begin: Begin) {
         }
         let end_moving = moving;
         let end_at = at;
-        moving -= length * (axis - along(row.frame));
+        moving -= length * row.by;
         at -= length * axis;
         let before_edge = pulled(strand, next, moving);
 
@@ -159,8 +159,9 @@ fn eliminate(strand: Strand, begin: Begin) {
         let span = max(0.5 * (joined + length), strand.shortest_span);
         let joint = joint_between(parent, half_turn(row.rest), row.now);
         let bending = strand.bending / span * strand.length * strand.length;
-        let stiffness = Stiffness(bending, step.twist_ratio, step.internal_damping / strand.length);
-        let own = torque_of(joint, stiffness, past_strain(strand, vertex, joint.strain));
+        let past = past_strain(strand, vertex, joint.strain);
+        let stiffness = Stiffness(bending, step.twist_ratio, lag_of(joint, step.internal_damping / strand.length, past));
+        let own = torque_of(joint, stiffness, past);
         let spring = spring_of(joint, stiffness);
         let stiff = stiffness_of(spring);
 

@@ -33,13 +33,17 @@ fn joint_between(parent: vec4<f32>, half_turn: vec4<f32>, child: vec4<f32>) -> J
     return Joint(middle, shorter, slope(shorter.w) * shorter.xyz);
 }
 
+/// The lag of the moments of a joint, which is 0 where it has flipped over since `past`. Torque and stiffness have to have the same one.
+fn lag_of(joint: Joint, lag: f32, past: vec3<f32>) -> f32 {
+    let rate = joint.strain - past;
+    return select(lag, 0.0, dot(rate, rate) > FLIP * FLIP);
+}
+
 /// The torque on the child, on the axes of the world; the parent gets the opposite. `past` is the strain that the rate of bending is
 /// measured from.
 fn torque_of(joint: Joint, stiffness: Stiffness, past: vec3<f32>) -> vec3<f32> {
-    let rate = joint.strain - past;
-    let lag = select(stiffness.lag, 0.0, dot(rate, rate) > FLIP * FLIP);
     let weights = stiffness.bending * vec3(1.0, 1.0, stiffness.twist_ratio);
-    let moment = weights * (joint.strain + lag * rate);
+    let moment = weights * (joint.strain + stiffness.lag * (joint.strain - past));
     let v = joint.turn.xyz;
     let w = joint.turn.w;
     let s = slope(w);

@@ -16,22 +16,23 @@ import package::wind::wind_of;
 @group(0) @binding(3) var<storage, read_write> rods: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
-const SLOTS: u32 = 15u;
+const SLOTS: u32 = 16u;
 /// What the vertex moved by in each of the last sub-steps, in turns, and its inverse mass.
 const MOVED: u32 = 0u;
 const MOVES: u32 = 4u;
-/// The frame of the edge in the last two sub-steps, in turns,
+/// The frame of the edge, and what its direction has changed by in this sub-step.
 const FRAME: u32 = 4u;
-const FRAMES: u32 = 2u;
-/// and the one that the next sub-step begins with; see `aim`.
+const TURNED: u32 = 5u;
+/// The frame that the next sub-step begins with, and what the direction changes by with it; see `aim`.
 const GUESS: u32 = 6u;
+const AIMED: u32 = 7u;
 /// What the elimination leaves of the edge: see `Left`.
-const LEFT: u32 = 7u;
+const LEFT: u32 = 8u;
 /// The strain of the joint before the edge and what the edge touches, and the strain before.
-const STRAIN: u32 = 12u;
-const LAST_STRAIN: u32 = 13u;
+const STRAIN: u32 = 13u;
+const LAST_STRAIN: u32 = 14u;
 /// How far the friction of the edge is stretched, and the side that it touches.
-const TOUCH: u32 = 14u;
+const TOUCH: u32 = 15u;
 
 /// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved where the edges behind
 /// the first free one take their guesses, and `Marks`;
@@ -139,11 +140,6 @@ fn moved_slot(strand: Strand, vertex: u32, ago: u32) -> u32 {
     return slot(strand, vertex, MOVED + (strand.turn + MOVES - ago) % MOVES);
 }
 
-/// The frame of the edge before a vertex at the end of this sub-step (0) or of the last one (1).
-fn frame_slot(strand: Strand, vertex: u32, ago: u32) -> u32 {
-    return slot(strand, vertex, FRAME + (strand.turn + ago) % FRAMES);
-}
-
 /// The half turn and the length of the edge before a vertex.
 fn rest_before(strand: Strand, vertex: u32) -> vec4<f32> {
     return rod_rest[2u * (vertex - 1u) * step.guides + strand.guide];
@@ -173,21 +169,22 @@ struct Row {
     moved: vec4<f32>,
     moved_before: vec3<f32>,
     moved_earlier: vec3<f32>,
-    /// The frame as far as it is known, and at the end of the last sub-step.
+    /// The frame as far as it is known, and what the direction has changed by. From the frames before and after a short sub-step that
+    /// would be rounding, and a strand would get its speed from it.
     now: vec4<f32>,
-    frame: vec4<f32>,
+    by: vec3<f32>,
     /// Half turn and length.
     rest: vec4<f32>,
 }
 
-/// The row of a vertex; of the root, that it moved alone. The first round begins with the guess.
+/// The row of a vertex; of the root, what it moved by alone. The first round begins with the guess.
 fn row_of(strand: Strand, vertex: u32, is_first_round: bool) -> Row {
     var row: Row;
     row.moved = rods[moved_slot(strand, vertex, 1u)];
     row.moved_before = rods[moved_slot(strand, vertex, 2u)].xyz;
     row.moved_earlier = rods[moved_slot(strand, vertex, 3u)].xyz;
-    row.now = rods[select(frame_slot(strand, vertex, 0u), slot(strand, vertex, GUESS), is_first_round)];
-    row.frame = rods[frame_slot(strand, vertex, 1u)];
+    row.now = rods[slot(strand, vertex, select(FRAME, GUESS, is_first_round))];
+    row.by = rods[slot(strand, vertex, select(TURNED, AIMED, is_first_round))].xyz;
     row.rest = rest_before(strand, max(vertex, 1u));
     return row;
 }

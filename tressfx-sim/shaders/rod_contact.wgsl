@@ -4,7 +4,7 @@
 import package::capsule::{GpuCapsule, GpuCapsuleMotion};
 import package::step::step;
 import package::symmetric::{Symmetric, outer, scaled, scaled_identity, sum};
-import package::vector::{DOWN, direction_or, rotate, rotate_back};
+import package::vector::{DOWN, direction_or, rotate, rotate_back, turned_by};
 
 /// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
 @group(0) @binding(7) var<storage, read> capsules: array<GpuCapsule>;
@@ -193,12 +193,6 @@ fn surface_bound(place: vec3<f32>, reach: f32) -> f32 {
         most = max(most, length(moved) + 2.0 * turn * reach);
     }
     return most;
-}
-
-/// By what a rotation moves a point.
-fn turned_by(rotation: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
-    let t = 2.0 * cross(rotation.xyz, point);
-    return rotation.w * t + cross(rotation.xyz, t);
 }
 
 /// Where the edge first comes to the surface on its way (conservative advancement), or where it gets to.

@@ -3,16 +3,20 @@
 import package::eliminate::{Left, left_of};
 import package::joint::{Spring, torque_by, twist_axis};
 import package::rod::{
-    GUESS, Strand, along, frame_slot, half_turn, moved_slot, positions, rest_before, rods, slot, speed_of,
+    AIMED, FRAME, GUESS, Strand, TURNED, along, half_turn, moved_slot, positions, rest_before, rods, slot, speed_of,
 };
 import package::step::step;
 import package::symmetric::times;
-import package::vector::{after, direction_or, is_finite, turned};
+import package::vector::{after, is_finite, turned_by};
 @if(contacts)
 import package::rod_touch::{Found, edge_between, look_at, may_touch, nothing_near};
 
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
+/// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
+const NO_AIM: f32 = 2.0;
+/// Nor is one that would be turned by more than what this cosine says.
+const FOLDED: f32 = -0.99;
 
 /// What the first free edge hangs on.
 struct Start {
@@ -37,23 +41,40 @@ struct Round {
 }
 
 /// What the sweep needs of a vertex and the edge before it.
-struct Hung { left: Left, now: vec4<f32>, frame: vec4<f32>, moved: vec4<f32>, rest: vec4<f32> }
+struct Hung { left: Left, now: vec4<f32>, by: vec3<f32>, moved: vec4<f32>, rest: vec4<f32> }
 
 fn hung(strand: Strand, vertex: u32, is_first_round: bool) -> Hung {
     var hung: Hung;
     hung.left = left_of(strand, vertex);
-    hung.now = rods[select(frame_slot(strand, vertex, 0u), slot(strand, vertex, GUESS), is_first_round)];
-    hung.frame = rods[frame_slot(strand, vertex, 1u)];
+    hung.now = rods[slot(strand, vertex, select(FRAME, GUESS, is_first_round))];
+    hung.by = rods[slot(strand, vertex, select(TURNED, AIMED, is_first_round))].xyz;
     hung.moved = rods[moved_slot(strand, vertex, 1u)];
     hung.rest = rest_before(strand, vertex);
     return hung;
 }
 
+/// A frame, and what the direction changes by on the way to it.
+struct Aimed { frame: vec4<f32>, by: vec3<f32> }
+
 /// The guess that Newton's method begins with: the edge is turned, the shortest way, to where its vertices would get with their
-/// velocities. `speed` is by what they move beyond each other.
-fn aim(now: vec4<f32>, length: f32, speed: vec3<f32>) -> vec4<f32> {
-    let here = along(now);
-    return turned(now, here, direction_or(length * here + speed, here));
+/// velocities; by these its end would get `apart` from its beginning.
+fn aim(frame: vec4<f32>, length: f32, apart: vec3<f32>) -> Aimed {
+    let here = along(frame);
+    let there = length * here + apart;
+    let size = sqrt(dot(there, there));
+    let is_wild = dot(apart, apart) >= NO_AIM * NO_AIM * length * length;
+    if (is_wild || dot(here, there) <= FOLDED * size) { return Aimed(frame, vec3(0.0)); }
+    // By how much the distance of the ends grows; from their difference it would be rounding.
+    let stretch = dot(apart, length * here + there) / (length + size);
+    let by = (apart - stretch * here) / size;
+    return Aimed(normalize(after(vec4(cross(here, by), 2.0 + dot(here, by)), frame)), by);
+}
+
+/// Stores a guess; gives by what it moves the end of the edge.
+fn keep_aim(strand: Strand, vertex: u32, length: f32, aimed: Aimed) -> vec3<f32> {
+    rods[slot(strand, vertex, GUESS)] = aimed.frame;
+    rods[slot(strand, vertex, AIMED)] = vec4(aimed.by, 0.0);
+    return length * aimed.by;
 }
 
 /// `limit`: an edge that turns by more, rad, makes another round certain; then what the round comes to is not kept, but for the frames.
@@ -78,15 +99,17 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         let size = sqrt(dot(turn, turn));
         turn *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
         round.longest = max(round.longest, min(size, LONGEST_TURN));
-        let now = normalize(after(rotation_by(turn), here.now));
-        let axis = along(now);
+        let rotation = rotation_by(turn);
+        let now = normalize(after(rotation, here.now));
+        let by = here.by + turned_by(rotation, along(here.now));
         let moving_before = round.moving;
         let place_before = round.place;
         shift += length * cross(turn, along(here.now));
-        round.moving += length * (axis - along(here.frame));
-        round.place += length * axis;
+        round.moving += length * by;
+        round.place += length * along(now);
         round.finite = round.finite && is_finite(round.place) && is_finite(round.moving);
-        rods[frame_slot(strand, vertex, 0u)] = now;
+        rods[slot(strand, vertex, FRAME)] = now;
+        rods[slot(strand, vertex, TURNED)] = vec4(by, 0.0);
         @if(contacts) {
             let edge = edge_between(strand, place_before, round.place, moving_before, round.moving);
             if (may_touch(&clear, start.surface, strand, edge, length)) { look_at(&found, strand, edge, vertex); }
@@ -97,9 +120,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
             // By what the vertex would move in another sub-step.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
             if (vertex > strand.held + 1u) {
-                let guess = aim(now, length, speed_here - speed_before);
-                round.aimed += length * (along(guess) - axis);
-                rods[slot(strand, vertex, GUESS)] = guess;
+                round.aimed += keep_aim(strand, vertex, length, aim(now, length, speed_here - speed_before));
             }
             speed_before = speed_here;
         }
@@ -118,11 +139,8 @@ fn aim_again(strand: Strand) -> vec3<f32> {
     var before = rods[moved_slot(strand, strand.held + 1u, 0u)].xyz;
     for (var vertex = strand.held + 2u; vertex <= strand.edges; vertex++) {
         let moved = rods[moved_slot(strand, vertex, 0u)].xyz;
-        let now = rods[frame_slot(strand, vertex, 0u)];
         let length = rest_before(strand, vertex).w;
-        let guess = aim(now, length, moved - before);
-        aimed += length * (along(guess) - along(now));
-        rods[slot(strand, vertex, GUESS)] = guess;
+        aimed += keep_aim(strand, vertex, length, aim(rods[slot(strand, vertex, FRAME)], length, moved - before));
         before = moved;
     }
     return aimed;

@@ -11,6 +11,12 @@ fn rotate(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return v + rotation.w * t + cross(rotation.xyz, t);
 }
 
+/// By what a rotation moves a point.
+fn turned_by(rotation: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
+    let t = 2.0 * cross(rotation.xyz, point);
+    return rotation.w * t + cross(rotation.xyz, t);
+}
+
 /// Turns a vector back.
 fn rotate_back(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return rotate(vec4(-rotation.xyz, rotation.w), v);

@@ -47,8 +47,8 @@ pub(crate) struct SectionBuffers {
 pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
-    /// Fifteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
-    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 15 + slot) * GROUP + guide % GROUP`.
+    /// Sixteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
+    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 16 + slot) * GROUP + guide % GROUP`.
     pub(crate) state: BufferId,
 }
 
@@ -145,7 +145,7 @@ pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
 
 impl RodBuffers {
     /// Of a vertex, in the buffer of the state.
-    const SLOTS: u64 = 15;
+    const SLOTS: u64 = 16;
 
     fn new(backend: &mut dyn Backend, shape: StrandShape) -> Result<Self> {
         let state = BufferDesc::storage("hair.rods", Self::state_bytes(shape.guides, shape.vertices));

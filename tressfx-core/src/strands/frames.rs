@@ -4,6 +4,8 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec4};
 
 /// Below this squared sine the root's direction counts as parallel to x, and y is crossed instead.
 const PARALLEL: f64 = 1e-4;
+/// Where the dot product of two directions is nearer to -1 than this, they count as opposite.
+const OPPOSITE: f64 = 1e-8;
 
 /// Distances from each vertex to the next; the last vertex has 0.
 pub(super) fn rest_lengths(strand: &[Vec4]) -> impl Iterator<Item = f32> + '_ {
@@ -39,7 +41,7 @@ pub(super) fn rest_frames(directions: &[DVec3]) -> impl Iterator<Item = Quat> + 
     let mut frame = root_frame(directions[0]);
     (0..=directions.len()).map(move |vertex| {
         if (1..directions.len()).contains(&vertex) {
-            let turn = DQuat::from_rotation_arc(directions[vertex - 1], directions[vertex]);
+            let turn = shortest_turn(directions[vertex - 1], directions[vertex]);
             frame = (turn * frame).normalize();
         }
         frame.as_quat()
@@ -59,6 +61,16 @@ pub(super) fn thickness(rest_lengths: &[f32]) -> impl Iterator<Item = f32> + '_ 
     })
 }
 
+/// The smallest rotation that takes a unit vector to another. Opposite ones are joined by a half turn about any axis across, followed by
+/// the small turn that is left: what is left of their sum is rounding, and an angle that followed from it would be anything.
+pub fn shortest_turn(from: DVec3, to: DVec3) -> DQuat {
+    if from.dot(to) > OPPOSITE - 1.0 {
+        return DQuat::from_rotation_arc(from, to);
+    }
+    let half_turn = DQuat::from_vec4(from.any_orthonormal_vector().extend(0.0));
+    DQuat::from_rotation_arc(-from, to) * half_turn
+}
+
 fn root_frame(direction: DVec3) -> DQuat {
     let by_x = direction.cross(DVec3::X);
     let z = if by_x.length_squared() < PARALLEL { direction.cross(DVec3::Y) } else { by_x }.normalize();
@@ -67,4 +79,21 @@ fn root_frame(direction: DVec3) -> DQuat {
 
 fn edges(strand: &[Vec4]) -> impl Iterator<Item = DVec3> + '_ {
     strand.windows(2).map(|pair| pair[1].truncate().as_dvec3() - pair[0].truncate().as_dvec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shortest_turn_takes_opposite_vectors_to_each_other() {
+        let from = DVec3::new(0.81, 0.56, 0.17).normalize();
+        for apart in [0.0, 1e-16, 1e-15, 1e-12, 1e-8, 1e-6, 1e-3, 1.0, 3.0] {
+            let to = (from.any_orthonormal_vector() * apart - from).normalize();
+            let turn = shortest_turn(from, to);
+            let error = (turn * from).distance(to);
+            assert!(error < 1e-11, "{apart:e} apart: {error:e}");
+            assert!((turn.length() - 1.0).abs() < 1e-12, "{turn}");
+        }
+    }
 }

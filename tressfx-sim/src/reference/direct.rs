@@ -16,6 +16,7 @@ mod rest;
 mod stand;
 
 use glam::{DMat3, DQuat, DVec3};
+use tressfx_core::strands::shortest_turn;
 
 pub use contact::{Obstacle, Touch};
 pub use guide::direct_guide;
@@ -31,6 +32,13 @@ const ANOTHER_ROUND: f64 = 2.0;
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
 const SHORT: f64 = 1.0 / 120.0;
+/// An edge whose ends move against each other by more than so many times its length is not aimed: the direction that it would get is no
+/// guess at all. Of an edge of a micrometre that is what rounding makes of its root's place, and a stiff joint that is thrown about by
+/// it in each sub-step takes the whole strand with it. With half of the length fast bars go through strands that they push.
+const NO_AIM: f64 = 2.0;
+/// Nor is one that would be turned by more than what this cosine says.
+const FOLDED: f64 = -0.99;
+
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
 const TOUCHING_ROUNDS: u32 = 4;
 /// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
@@ -275,7 +283,7 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 }
 
 /// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
-/// velocities.
+/// velocities, see [`NO_AIM`] and [`FOLDED`].
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
     let frames: Vec<_> = (0..rod.frames.len())
@@ -286,8 +294,12 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
             let held = step.root * rest.positions[edge] + step.root_displacement;
             let from = if edge == rest.held { held } else { free(edge) };
             let here = rod.frames[edge] * DVec3::Z;
-            let there = (free(edge + 1) - from).try_normalize().unwrap_or(here);
-            (DQuat::from_rotation_arc(here, there) * rod.frames[edge]).normalize()
+            let there = free(edge + 1) - from;
+            let apart = there.distance(rest.lengths[edge] * here);
+            if apart >= NO_AIM * rest.lengths[edge] || there.dot(here) <= FOLDED * there.length() {
+                return rod.frames[edge];
+            }
+            (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
         })
         .collect();
     rod.frames = frames;

@@ -42,16 +42,20 @@ impl Joint {
         Self { middle, turn, strain: slope(turn.w) * turn.xyz() }
     }
 
+    /// The lag of its moments, which is 0 where it has flipped over since `past`. Torque and stiffness have to have the same one: a joint
+    /// that is held as if it were damped, and is not, is far from its balance after any number of rounds, and gains energy.
+    pub(super) fn lag(&self, lag: f64, past: DVec3) -> f64 {
+        if self.strain.distance_squared(past) > FLIP * FLIP { 0.0 } else { lag }
+    }
+
     /// The torque on the child, on the axes of the world; the parent gets the opposite. `past` is the strain that the rate of
     /// bending is measured from.
     ///
     /// It is the derivative of the energy `moment . strain / 2` by a rotation of the child: a rotation `phi` changes `v` by
     /// `(w phi + phi x v) / 2` and `w` by `-phi . v / 2`, and so `s` by `s^2 w / 4 (phi . v)`.
     pub(super) fn torque(&self, stiffness: &Stiffness, past: DVec3) -> DVec3 {
-        let rate = self.strain - past;
-        let lag = if rate.length_squared() > FLIP * FLIP { 0.0 } else { stiffness.lag };
         let weights = stiffness.bending * DVec3::new(1.0, 1.0, stiffness.twist_ratio);
-        let moment = weights * (self.strain + lag * rate);
+        let moment = weights * (self.strain + stiffness.lag * (self.strain - past));
         let (v, w) = (self.turn.xyz(), self.turn.w);
         let s = slope(w);
         let torque = s * (w * moment + v.cross(moment)) / 2.0 + s * s * w / 4.0 * v.dot(moment) * v;

@@ -110,8 +110,10 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     let joint = Joint::new(parent, rest.joints[edge], rod.frames[edge]);
     let square = motion.length * motion.length;
     let bending = step.bending * rest.stiffening / rest.spans[edge] * square;
-    let stiffness = Stiffness { bending, twist_ratio: step.twist_ratio, lag: step.damping / motion.length };
-    let own = joint.torque(&stiffness, motion.past_strains[edge]);
+    let past = motion.past_strains[edge];
+    let lag = joint.lag(step.damping / motion.length, past);
+    let stiffness = Stiffness { bending, twist_ratio: step.twist_ratio, lag };
+    let own = joint.torque(&stiffness, past);
     let spring = joint.stiffness(&stiffness);
 
     // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.

@@ -1,6 +1,7 @@
 //! What a rod is at rest.
 
 use glam::{DQuat, DVec3};
+use tressfx_core::strands::shortest_turn;
 
 const MASS_CORRECTION: f64 = 5.0 / 6.0;
 
@@ -68,7 +69,7 @@ fn transported(points: &[DVec3], shortest: f64) -> Vec<DQuat> {
     let mut next = |edge: &[DVec3]| {
         let direction = edge[1] - edge[0];
         if direction.length() > shortest {
-            frame = (DQuat::from_rotation_arc(frame * DVec3::Z, direction.normalize()) * frame).normalize();
+            frame = (shortest_turn(frame * DVec3::Z, direction.normalize()) * frame).normalize();
         }
         frame
     };
