@@ -109,13 +109,13 @@ fn errors_fall_with_the_square_of_the_sub_step() {
 #[test]
 fn energy_never_grows_above_its_start() {
     for vertices in [2, 5, 8, 32] {
-        for rate in [30.0, 60.0, 120.0, 240.0, 500.0, 1000.0] {
+        for rate in [30.0, 60.0, 120.0, 240.0, 500.0, 1000.0, 1920.0, 7680.0] {
             // The start has the energy 0; what it can lose is its height.
             let mut most = f64::MIN;
             let highest = |step: &RodStep, rest: &RodRest, rod: &Rod| most = most.max(energy(step, rest, rod));
             released(vertices, 1.0 / rate, 1.5, highest);
             let share = most / (G * LENGTH * LENGTH / 2.0);
-            assert!(share < 1e-3, "{vertices} vertices, 1 / {rate} s: {share}");
+            assert!(share <= 0.0, "{vertices} vertices, 1 / {rate} s: {share}");
         }
     }
 }
