@@ -11,10 +11,10 @@ import package::rod::{
 };
 import package::root::shape_of;
 import package::step::step;
-import package::substitute::{Aimed, Round, Start, aim, aim_again, keep_aim, substitute};
+import package::substitute::{Aimed, Round, Start, aim, aim_again, keep_aim, nothing_done, substitute};
 import package::vector::is_finite;
 @if(contacts)
-import package::rod_touch::{Range, note_touches, surface_way};
+import package::rod_touch::{Range, keep_touches, surface_way};
 
 /// Strands that were reset because they had become non-finite.
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
@@ -118,9 +118,11 @@ fn first_begin(strand: Strand, start: Start) -> Begin {
 
 /// All rounds of a sub-step; gives what the last one has come to.
 fn rounds(strand: Strand, start: Start) -> Round {
+    var round = nothing_done(start);
+    // A strand that the root holds as a whole, such as one of no length.
+    if (strand.held >= strand.edges) { return round; }
     let calm = ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0);
     var begin = first_begin(strand, start);
-    var round: Round;
     for (var count = 1u; count <= MOST_ROUNDS; count++) {
         eliminate(strand, begin);
         let limit = select(1e9, calm, count < step.rounds);
@@ -144,7 +146,7 @@ fn finish(strand: Strand, round: Round) {
     var calm = round.longest < TOO_FAST;
     var near = vec2(f32(step.vertices), 0.0);
     @if(contacts) {
-        let is_new = note_touches(strand, round.found.near);
+        let is_new = keep_touches(strand, round.found.near);
         calm = calm && !is_new;
         near = vec2(f32(round.found.near.first), f32(round.found.near.last));
     }

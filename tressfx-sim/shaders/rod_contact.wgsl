@@ -116,19 +116,27 @@ fn touch_capsule(contacts: ptr<function, Contacts>, capsule: GpuCapsule, edge: E
     }
     let is_known = last.obstacle != 0u && start.gap <= 0.0;
     let side = select(first.normal, last.normal, is_known);
+    var point = near;
+    var weight = 1.0;
+    let end = nearest_to(capsule, edge.u, edge.v, 1.0);
+    var touches_end = dot(end.normal, side) >= SAME_SIDE;
     if (dot(near.normal, side) < SAME_SIDE) {
         // It has got to the other side of the axis: it is held at the side that it came from.
         let center = mix(capsule.a, capsule.b, first.t);
         let gap = dot(mix(edge.u, edge.v, first.s) - center, side) - radius_at(capsule, first.t);
-        add(contacts, capsule, edge, way, Near(first.s, first.t, side, gap), 1.0, last.stretch, index, mass);
-        return;
+        point = Near(first.s, first.t, side, gap);
+        touches_end = false;
+    } else {
+        let before = nearest_to(capsule, edge.u, edge.v, 0.0);
+        let nearer = (min(before.gap, end.gap) - near.gap) / (NEARER * radius_at(capsule, near.t));
+        weight = clamp(nearer, 0.0, 1.0);
     }
-    let before = nearest_to(capsule, edge.u, edge.v, 0.0);
-    let end = nearest_to(capsule, edge.u, edge.v, 1.0);
-    let nearer = (min(before.gap, end.gap) - near.gap) / (NEARER * radius_at(capsule, near.t));
-    add(contacts, capsule, edge, way, near, clamp(nearer, 0.0, 1.0), last.stretch, index, mass);
-    if (dot(end.normal, side) >= SAME_SIDE) {
-        add(contacts, capsule, edge, way, end, 1.0, last.stretch, index, mass);
+    // A loop, so that drivers that put functions in line do it once: it is what takes them longest to compile.
+    for (var i = 0u; i < 2u; i++) {
+        add(contacts, capsule, edge, way, point, weight, last.stretch, index, mass);
+        if (!touches_end) { break; }
+        point = end;
+        weight = 1.0;
     }
 }
 

@@ -40,6 +40,18 @@ struct Round {
     @if(contacts) found: Found,
 }
 
+/// A round at its beginning.
+fn nothing_done(start: Start) -> Round {
+    var round: Round;
+    round.finite = true;
+    round.moving = start.moving;
+    round.place = start.place;
+    @if(contacts) {
+        round.found = Found(nothing_near(), false, false);
+    }
+    return round;
+}
+
 /// What the sweep needs of a vertex and the edge before it.
 struct Hung { left: Left, now: vec4<f32>, by: vec3<f32>, moved: vec4<f32>, rest: vec4<f32> }
 
@@ -80,15 +92,12 @@ fn keep_aim(strand: Strand, vertex: u32, length: f32, aimed: Aimed) -> vec3<f32>
 /// `limit`: an edge that turns by more, rad, makes another round certain; then what the round comes to is not kept, but for the frames.
 fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) -> Round {
     let speed = speed_of(strand.has_past, 1.0);
-    var round: Round;
-    round.finite = true;
-    round.moving = start.moving;
-    round.place = start.place;
+    var round = nothing_done(start);
     var shift = vec3(0.0);
     var parent_turn = vec3(0.0);
     var parent = start.parent;
     var speed_before = vec3(0.0);
-    @if(contacts) var found = Found(nothing_near(), false, false);
+    @if(contacts) var found = round.found;
     @if(contacts) var clear = 0.0;
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
