@@ -80,7 +80,10 @@ fn main() -> Result<(), Failure> {
     let (name, open) = DEVICES.iter().find(|(name, _)| *name == args.backend).ok_or("no such backend")?;
     let mut backend = match timed(name, open()) {
         Ok(backend) => backend,
-        Err(message) => return Ok(println!("{message}")),
+        Err(message) => {
+            println!("{message}");
+            return Ok(());
+        }
     };
     println!("{name}: {}", backend.caps().adapter);
     for groom in &args.grooms {

@@ -11,10 +11,10 @@ import package::rod::{
 };
 import package::root::shape_of;
 import package::step::step;
-import package::substitute::{Aimed, Round, Start, aim, aim_again, keep_aim, nothing_done, substitute};
+import package::substitute::{Aimed, NO_AIM_AT_ROOT, Round, Start, aim, aim_again, keep_aim, nothing_done, substitute};
 import package::vector::is_finite;
 @if(contacts)
-import package::rod_touch::{Range, keep_touches, surface_way};
+import package::rod_touch::{Range, note_touches, surface_way};
 
 /// Strands that were reset because they had become non-finite.
 @group(0) @binding(5) var<storage, read_write> non_finite: atomic<u32>;
@@ -102,7 +102,8 @@ fn first_begin(strand: Strand, start: Start) -> Begin {
     let moved = rods[moved_slot(strand, vertex, 1u)].xyz;
     let before = rods[moved_slot(strand, vertex, 2u)].xyz;
     let length = rest_before(strand, vertex).w;
-    let aimed = aim(frame, length, strand.speed.x * moved + strand.speed.y * before - start.moving);
+    let apart = strand.speed.x * moved + strand.speed.y * before - start.moving;
+    let aimed = aim(frame, length, apart, NO_AIM_AT_ROOT);
     var begin: Begin;
     begin.is_first_round = true;
     begin.parent = start.parent;
@@ -146,7 +147,7 @@ fn finish(strand: Strand, round: Round) {
     var calm = round.longest < TOO_FAST;
     var near = vec2(f32(step.vertices), 0.0);
     @if(contacts) {
-        let is_new = keep_touches(strand, round.found.near);
+        let is_new = note_touches(strand, round.found.near);
         calm = calm && !is_new;
         near = vec2(f32(round.found.near.first), f32(round.found.near.last));
     }

@@ -1,7 +1,7 @@
 // Which edges of a strand touch a capsule, and which come near enough to be looked at.
 
 import package::capsule::{clearance, nearest};
-import package::rod::{LEFT, LENGTHS, STRAIN, Strand, TOUCH, reach_of, rods, slot};
+import package::rod::{LENGTHS, STRAIN, Strand, TOUCH, moved_slot, positions, rods, reach_of, slot};
 import package::rod_contact::{
     CERTAIN, Edge, FAR, Touch, capsules, contacts_of, nothing_touched, packed_direction, surface_bound, unpacked_direction,
 };
@@ -64,15 +64,12 @@ fn may_touch(clear: ptr<function, f32>, surface: f32, strand: Strand, edge: Edge
 /// What has been found along a strand.
 struct Found { near: Range, touching: bool, deep: bool }
 
-/// Looks at an edge, the one before `vertex`, and notes what it touches in place of what the elimination has left of it, which left a 0
-/// for the obstacle.
+/// Looks at an edge, the one before `vertex`.
 fn look_at(found: ptr<function, Found>, strand: Strand, edge: Edge, vertex: u32) {
     (*found).near = Range(min((*found).near.first, vertex), vertex);
     let touch = contacts_of(strand.root_now, edge, last_touch(strand, vertex), 1.0).touch;
     (*found).touching = (*found).touching || touch.obstacle > 0u;
     (*found).deep = (*found).deep || touch.is_deep;
-    rods[slot(strand, vertex, LEFT)] = vec4(touch.stretch, packed_direction(touch.normal));
-    rods[slot(strand, vertex, LEFT + 1u)] = vec4(0.0, 0.0, 0.0, f32(touch.obstacle));
 }
 
 /// The distance from a place, relative to the centre of the groom, to the nearest capsule, or less.
@@ -86,14 +83,19 @@ fn clear_distance(place: vec3<f32>) -> f32 {
     return min(clear, CERTAIN * clear);
 }
 
-/// Keeps what the edges of a range touch for the next sub-step, and says whether any of it is new.
-fn keep_touches(strand: Strand, range: Range) -> bool {
+/// Notes what the edges that may touch anything touch, for the next sub-step, and says whether any of it is new.
+fn note_touches(strand: Strand, range: Range) -> bool {
     var is_new = false;
     for (var vertex = range.first; vertex <= range.last; vertex++) {
-        let obstacle = rods[slot(strand, vertex, LEFT + 1u)].w;
-        is_new = is_new || (obstacle > 0.0 && u32(obstacle) != last_touch(strand, vertex).obstacle);
-        rods[slot(strand, vertex, TOUCH)] = rods[slot(strand, vertex, LEFT)];
-        rods[slot(strand, vertex, STRAIN)].w = obstacle;
+        let u = positions[(vertex - 1u) * step.strands + strand.guide].xyz - strand.root_now;
+        let v = positions[vertex * step.strands + strand.guide].xyz - strand.root_now;
+        let u_moved = rods[moved_slot(strand, vertex - 1u, 0u)].xyz;
+        let v_moved = rods[moved_slot(strand, vertex, 0u)].xyz;
+        let last = last_touch(strand, vertex);
+        let touch = contacts_of(strand.root_now, edge_between(strand, u, v, u_moved, v_moved), last, 1.0).touch;
+        is_new = is_new || (touch.obstacle > 0u && touch.obstacle != last.obstacle);
+        rods[slot(strand, vertex, TOUCH)] = vec4(touch.stretch, packed_direction(touch.normal));
+        rods[slot(strand, vertex, STRAIN)].w = f32(touch.obstacle);
     }
     return is_new;
 }

@@ -15,6 +15,8 @@ import package::rod_touch::{Found, edge_between, look_at, may_touch, nothing_nea
 const LONGEST_TURN: f32 = 1.5;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
+/// The same for the first free edge: where its root is may be mostly rounding.
+const NO_AIM_AT_ROOT: f32 = 0.5;
 /// Nor is one that would be turned by more than what this cosine says.
 const FOLDED: f32 = -0.99;
 
@@ -69,12 +71,12 @@ fn hung(strand: Strand, vertex: u32, is_first_round: bool) -> Hung {
 struct Aimed { frame: vec4<f32>, by: vec3<f32> }
 
 /// The guess that Newton's method begins with: the edge is turned, the shortest way, to where its vertices would get with their
-/// velocities; by these its end would get `apart` from its beginning.
-fn aim(frame: vec4<f32>, length: f32, apart: vec3<f32>) -> Aimed {
+/// velocities; by these its end would get `apart` from its beginning, and by more than `most` times its length it is not turned.
+fn aim(frame: vec4<f32>, length: f32, apart: vec3<f32>, most: f32) -> Aimed {
     let here = along(frame);
     let there = length * here + apart;
     let size = sqrt(dot(there, there));
-    let is_wild = dot(apart, apart) >= NO_AIM * NO_AIM * length * length;
+    let is_wild = dot(apart, apart) >= most * most * length * length;
     if (is_wild || dot(here, there) <= FOLDED * size) { return Aimed(frame, vec3(0.0)); }
     // By how much the distance of the ends grows; from their difference it would be rounding.
     let stretch = dot(apart, length * here + there) / (length + size);
@@ -129,7 +131,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
             // By what the vertex would move in another sub-step.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
             if (vertex > strand.held + 1u) {
-                round.aimed += keep_aim(strand, vertex, length, aim(now, length, speed_here - speed_before));
+                round.aimed += keep_aim(strand, vertex, length, aim(now, length, speed_here - speed_before, NO_AIM));
             }
             speed_before = speed_here;
         }
@@ -149,7 +151,7 @@ fn aim_again(strand: Strand) -> vec3<f32> {
     for (var vertex = strand.held + 2u; vertex <= strand.edges; vertex++) {
         let moved = rods[moved_slot(strand, vertex, 0u)].xyz;
         let length = rest_before(strand, vertex).w;
-        aimed += keep_aim(strand, vertex, length, aim(rods[slot(strand, vertex, FRAME)], length, moved - before));
+        aimed += keep_aim(strand, vertex, length, aim(rods[slot(strand, vertex, FRAME)], length, moved - before, NO_AIM));
         before = moved;
     }
     return aimed;

@@ -33,9 +33,11 @@ const ANOTHER_ROUND: f64 = 2.0;
 /// itself.
 const SHORT: f64 = 1.0 / 120.0;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: the direction that it would get is no
-/// guess at all. Of an edge of a micrometre that is what rounding makes of its root's place, and a stiff joint that is thrown about by
-/// it in each sub-step takes the whole strand with it. With half of the length fast bars go through strands that they push.
+/// guess at all. With half of the length fast bars go through strands that they push.
 const NO_AIM: f64 = 2.0;
+/// The same for the first free edge, which asks where the root is. Of an edge of a micrometre that is mostly rounding, and a stiff joint
+/// that is thrown about by it in each sub-step takes the whole strand with it.
+const NO_AIM_AT_ROOT: f64 = 0.5;
 /// Nor is one that would be turned by more than what this cosine says.
 const FOLDED: f64 = -0.99;
 
@@ -296,7 +298,8 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
             let here = rod.frames[edge] * DVec3::Z;
             let there = free(edge + 1) - from;
             let apart = there.distance(rest.lengths[edge] * here);
-            if apart >= NO_AIM * rest.lengths[edge] || there.dot(here) <= FOLDED * there.length() {
+            let most = if edge == rest.held { NO_AIM_AT_ROOT } else { NO_AIM };
+            if apart >= most * rest.lengths[edge] || there.dot(here) <= FOLDED * there.length() {
                 return rod.frames[edge];
             }
             (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
