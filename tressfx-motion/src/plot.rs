@@ -94,6 +94,15 @@ fn front(points: &[Point]) -> Vec<Point> {
     sorted
 }
 
+/// The label of a place on a logarithmic axis: ones, twos and fives have one, the others would be too near.
+fn tick(value: f64) -> String {
+    let scale = 10f64.powf(value.log10().floor());
+    match (value / scale).round() as u32 {
+        first @ (1 | 2 | 5) => format!("{}", (f64::from(first) * scale * 1e9).round() / 1e9),
+        _ => String::new(),
+    }
+}
+
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
 type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
@@ -118,8 +127,8 @@ fn draw(svg: &mut String, case: &str, device: &str, points: &[Point]) -> Drawn {
         .light_line_style(WHITE)
         .x_desc(format!("milliseconds for 1/60 s of motion, {device}"))
         .y_desc("distance of tips to the reference, % of length")
-        .x_label_formatter(&|ms| format!("{ms}"))
-        .y_label_formatter(&|percent| format!("{percent}"))
+        .x_label_formatter(&|ms| tick(*ms))
+        .y_label_formatter(&|percent| tick(*percent))
         .draw()?;
     draw_front(&mut chart, points)?;
     let mut families: Vec<&str> = Vec::new();
@@ -196,5 +205,11 @@ mod tests {
         }
         let untimed = Row { ms: None, ..row(60, 0.25, 1.0) };
         assert!(!is_drawn(&[&untimed]), "what has no time has no place");
+    }
+
+    #[test]
+    fn ones_twos_and_fives_of_an_axis_have_labels() {
+        let labels = [0.1, 0.2, 0.1 + 0.2, 0.5, 1.0, 20.0, 90.0].map(tick);
+        assert_eq!(labels, ["0.1", "0.2", "", "0.5", "1", "20", ""]);
     }
 }

@@ -54,13 +54,16 @@ fn bend(shaping: ptr<function, Shaping>, k: u32) {
     }
 }
 
+/// Below this `1 + cos` of the angle between two directions is short of digits.
+const FOLDED: f32 = 0.3;
+
 /// A unit quaternion, then the smallest turn from one unit vector to another. Its length is kept at 1 by what is known before the
-/// turn is: the walk along the strand waits for this. That of the turn is measured: between vectors that are all but opposite `c` is
-/// mostly rounding, and a length that followed from it would grow from fold to fold.
+/// turn is: the walk along the strand waits for this. Between vectors that are all but opposite that of the turn is measured: there `c`
+/// is mostly rounding, and a length that followed from it would grow from fold to fold.
 fn turned_on(frame: vec4<f32>, one: vec3<f32>, other: vec3<f32>) -> vec4<f32> {
     let to_unit = 1.5 - 0.5 * dot(frame, frame);
     let c = 1.0 + dot(one, other);
     if (c < 1e-6) { return after(vec4(across(one), 0.0), frame); }
     let arc = vec4(cross(one, other), c);
-    return after(arc * (inverseSqrt(dot(arc, arc)) * to_unit), frame);
+    return after(arc * (inverseSqrt(select(2.0 * c, dot(arc, arc), c < FOLDED)) * to_unit), frame);
 }

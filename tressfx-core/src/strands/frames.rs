@@ -64,11 +64,12 @@ pub(super) fn thickness(rest_lengths: &[f32]) -> impl Iterator<Item = f32> + '_ 
 /// The smallest rotation that takes a unit vector to another. Opposite ones are joined by a half turn about any axis across, followed by
 /// the small turn that is left: what is left of their sum is rounding, and an angle that followed from it would be anything.
 pub fn shortest_turn(from: DVec3, to: DVec3) -> DQuat {
+    // glam's takes what is less than 2e-8 apart for the same.
+    let arc = |from: DVec3| DQuat::from_vec4(from.cross(to).extend(1.0 + from.dot(to))).normalize();
     if from.dot(to) > OPPOSITE - 1.0 {
-        return DQuat::from_rotation_arc(from, to);
+        return arc(from);
     }
-    let half_turn = DQuat::from_vec4(from.any_orthonormal_vector().extend(0.0));
-    DQuat::from_rotation_arc(-from, to) * half_turn
+    arc(-from) * DQuat::from_vec4(from.any_orthonormal_vector().extend(0.0))
 }
 
 fn root_frame(direction: DVec3) -> DQuat {
