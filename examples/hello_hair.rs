@@ -38,16 +38,18 @@ fn main() -> Result<()> {
     let view =
         Camera::around(&strands.rest.iter().map(|vertex| vertex.truncate()).collect::<Vec<_>>(), SIZE).view(SIZE)?;
     let (lights, material) = (studio_lights(), Material::default());
-    let scene = ScenePass::new(&mut gpu, FORMAT, view.depth())?;
+    let scene = ScenePass::new(&mut gpu, FORMAT, view.depth(), true)?;
     let head = SceneMesh::new(&mut gpu, &mut list, &groom.mesh())?;
-    let hair = ShadedStrands::new(&mut gpu, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+    let hair = ShadedStrands::new(&mut gpu, sim.buffers()[0], StrandInfo::new(&strands))?;
     let mut renderer = HairRenderer::new(&mut gpu, &RenderDesc::new(SIZE, FORMAT))?;
 
-    // The head, and the hair over it.
+    // The shadow of the hair, the head in it, and the hair over the head.
     let head = MeshDraw { mesh: &head, surface: Surface::default(), pose: Pose::IDENTITY };
     let draws = [SectionDraw::new(&hair, &material, sim.pose())];
     renderer.grow_to_predicted(&mut gpu, &view, &draws)?;
-    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head])?;
+    renderer.cast(&mut list, &lights, &draws)?;
+    let shadows = renderer.shadow_bindings();
+    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head], &shadows)?;
     renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws)?;
     let picture = list.read_texture(targets.color);
 

@@ -184,7 +184,7 @@ impl Hair {
         let mut uploads = PassList::new();
         let buffers = StrandBuffers::new(backend, StrandShape::of(strands), Vec3::ZERO)?;
         buffers.upload(&mut uploads, strands);
-        let section = ShadedStrands::new(backend, &mut uploads, buffers, StrandInfo::new(strands))?;
+        let section = ShadedStrands::new(backend, buffers, StrandInfo::new(strands))?;
         backend.run(&uploads)?;
         Ok(Self { view, lights: lights(), targets, buffers, section, size })
     }

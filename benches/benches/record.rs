@@ -43,7 +43,7 @@ impl Frames {
         let points: Vec<_> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
         let view = Camera::around(&points, SIZE).view(SIZE).expect("a view");
         let info = StrandInfo::new(&strands);
-        let section = |&buffers| ShadedStrands::new(backend, &mut uploads, buffers, info.clone()).expect("a section");
+        let section = |&buffers| ShadedStrands::new(backend, buffers, info.clone()).expect("a section");
         let sections = sim.buffers().iter().map(section).collect();
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, SIZE, format));
         let targets = Targets::new(

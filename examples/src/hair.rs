@@ -47,7 +47,7 @@ impl Hair {
         let colliders = Collider::all_with_head(&groom.capsules());
         let mut list = PassList::new();
         let sim = HairSim::new(backend, &mut list, &[section], colliders.len())?;
-        let section = ShadedStrands::new(backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands))?;
+        let section = ShadedStrands::new(backend, sim.buffers()[0], StrandInfo::new(&strands))?;
         let mut renderer = HairRenderer::new(backend, &RenderDesc::new(view.size(), format))?;
         let material = Material::default();
         renderer.grow_to_predicted(backend, view, &[SectionDraw::new(&section, &material, sim.pose())])?;

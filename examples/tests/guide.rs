@@ -144,7 +144,7 @@ fn everything() -> PassList {
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
     let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
-    let section = ShadedStrands::new(&mut backend, &mut list, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
+    let section = ShadedStrands::new(&mut backend, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let lights = Lights::default();

@@ -9,7 +9,7 @@ use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
     Counters, HAIR_FORMAT, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
-    StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
+    ShadowDesc, StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
 };
 
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -52,7 +52,6 @@ impl Groom {
             info: StrandInfo {
                 metres_per_unit: 1.0,
                 fitting_radius: 0.000_1,
-                visibility: visibility(strands.len() * vertices),
                 sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
             },
             material,
@@ -84,17 +83,10 @@ impl Groom {
             uniform: uniforms::SectionUniform::new(self.shape, &self.info, &self.material, &self.pose),
             positions: &self.positions,
             tangents: &self.tangents,
-            visibility: &self.info.visibility,
+            arriving: None,
             thickness: &self.thickness,
         }
     }
-}
-
-/// Some light from everywhere, differently for each vertex.
-fn visibility(count: usize) -> Vec<[f32; 4]> {
-    let mut random = Random(77);
-    let mut value = || 0.6 * random.unit() - 0.3;
-    (0..count).map(|_| [value(), value(), value(), 0.6 + value()]).collect()
 }
 
 /// Numbers in [0, 1) that are the same everywhere.
@@ -172,6 +164,8 @@ pub struct Setup {
     pub technique: Technique,
     /// Whether depth and coverage of the hair are drawn too.
     pub hair_output: bool,
+    /// How shadows are made.
+    pub shadows: Option<ShadowDesc>,
 }
 
 impl Setup {
@@ -188,7 +182,7 @@ impl Setup {
 }
 
 impl Default for Setup {
-    /// 96 x 64 pixels that look along -z at the origin from a distance of 3.
+    /// 96 x 64 pixels that look along -z at the origin from a distance of 3, without shadows.
     fn default() -> Self {
         let camera = Camera {
             eye: Vec3::new(0.0, 0.0, 3.0),
@@ -198,13 +192,13 @@ impl Default for Setup {
             far: 50.0,
             depth: DepthOrder::Reverse,
         };
-        Self { camera, size: [96, 64], technique: Technique::default(), hair_output: false }
+        Self { camera, size: [96, 64], technique: Technique::default(), hair_output: false, shadows: None }
     }
 }
 
 fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
     let desc = RenderDesc::new(setup.size, Format::Rgba16F).technique(setup.technique);
-    let desc = desc.hair_output(setup.hair_output);
+    let desc = desc.hair_output(setup.hair_output).shadows(setup.shadows);
     HairRenderer::new(backend, &desc).expect("a renderer")
 }
 
@@ -301,7 +295,7 @@ impl Screen {
         list.upload(buffers.positions, 0, &groom.positions);
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
-        let section = ShadedStrands::new(&mut *self.backend, list, buffers, groom.info.clone()).expect("a section");
+        let section = ShadedStrands::new(&mut *self.backend, buffers, groom.info.clone()).expect("a section");
         (buffers, section)
     }
 

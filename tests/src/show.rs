@@ -123,7 +123,7 @@ impl<B: Run> Show<B> {
             |label, format| gpu.create_texture(&TextureDesc::new(label, scene.size, format)).expect("a texture");
         let targets = Targets::new(texture("show.color", TARGET), texture("show.depth", Format::Depth32F));
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
-        let section = ShadedStrands::new(gpu, &mut uploads, sim.buffers()[0], scene.info.clone());
+        let section = ShadedStrands::new(gpu, sim.buffers()[0], scene.info.clone());
         let section = section.expect("a section");
         let desc = RenderDesc::new(scene.size, TARGET).technique(scene.technique);
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");

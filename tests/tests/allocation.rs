@@ -94,7 +94,7 @@ fn a_renderer_its_size_and_its_sections() {
     let info = StrandInfo::new(&strands);
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
     let (section, failures) =
-        backend.fail_everywhere(|backend| ShadedStrands::new(backend, &mut PassList::new(), buffers, info.clone()));
+        backend.fail_everywhere(|backend| ShadedStrands::new(backend, buffers, info.clone()));
     assert!(failures > 1, "{failures} creations");
     let tiles = RenderDesc::new([64, 48], Format::Rgba16F).technique(TilesDesc::default());
     let mut tiles = HairRenderer::new(&mut backend, &tiles).unwrap();

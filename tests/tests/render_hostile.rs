@@ -72,7 +72,6 @@ fn segments_without_length_hide_nothing() {
     let pictures = [&strands, &doubled].map(|strands| {
         let mut groom = Groom::new(strands, even);
         groom.tangents.fill([0.0, 1.0, 0.0, 0.0]);
-        groom.info.visibility.fill([0.0, 0.0, 0.0, 1.0]);
         screen.hair(&[&groom])
     });
     let difference = pictures[0].difference(&pictures[1].pixels());

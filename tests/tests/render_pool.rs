@@ -127,7 +127,7 @@ fn nothing_to_draw_makes_no_pass() {
     let targets = Targets::new(texture(&mut backend, Format::Rgba16F), texture(&mut backend, Format::Depth32F));
     let section = |backend: &mut NullBackend, groom: &Groom| {
         let buffers = StrandBuffers::new(backend, groom.shape, Vec3::ZERO).unwrap();
-        ShadedStrands::new(backend, &mut PassList::new(), buffers, groom.info.clone()).unwrap()
+        ShadedStrands::new(backend, buffers, groom.info.clone()).unwrap()
     };
     let (empty, full) = (Groom::new(&[], material()), Groom::wavy(3, 4, 6, material()));
     let (none, some) = (section(&mut backend, &empty), section(&mut backend, &full));

@@ -7,7 +7,7 @@ use tressfx_conformance::render::{Groom, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
-use tressfx_render::{Highlight, Light, LightPlace, Material, SectionDraw, ViewDraw, reference};
+use tressfx_render::{Highlight, Light, Material, SectionDraw, ViewDraw, reference};
 
 use support::screen;
 
@@ -42,8 +42,7 @@ fn error(screen: &mut Screen, groom: &Groom) -> f64 {
 #[test]
 fn every_vertex_is_as_in_f64() {
     let Some(mut screen) = screen(|_| ()) else { return };
-    let place = LightPlace::Point { position: Vec3::new(0.4, 0.3, 0.8), reach: 0.7 };
-    screen.lights.lights.push(Light { place, color: Vec3::new(2.0, 1.0, 0.5) });
+    screen.lights.lights.push(Light::point(Vec3::new(0.4, 0.3, 0.8), 0.7, Vec3::new(2.0, 1.0, 0.5)));
     let sharp = Highlight { strength: 1.0, exponent: 200.0 };
     let materials = [
         Material::default(),

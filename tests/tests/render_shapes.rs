@@ -126,7 +126,6 @@ fn twice_as_many_vertices_make_the_same_picture() {
         let pictures = [coarse, fine].map(|strand| {
             let mut groom = Groom::new(&[strand], look);
             groom.tangents.fill([0.0, 1.0, 0.0, 0.0]);
-            groom.info.visibility.fill([0.0, 0.0, 0.0, 1.0]);
             screen.hair(&[&groom])
         });
         let difference = pictures[0].difference(&pictures[1].pixels());

@@ -132,7 +132,7 @@ fn a_prediction_that_was_too_large_is_corrected_by_the_first_measurement() {
     let groom = Groom::wavy(400, 16, 3, Material::default());
     let mut list = PassList::new();
     let buffers = StrandBuffers::new(&mut backend, groom.shape, Vec3::ZERO).unwrap();
-    let strands = ShadedStrands::new(&mut backend, &mut list, buffers, groom.info.clone()).unwrap();
+    let strands = ShadedStrands::new(&mut backend, buffers, groom.info.clone()).unwrap();
     let camera = Camera { depth: DepthOrder::Standard, ..Camera::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 64]) };
     let view = camera.view([64, 64]).unwrap();
     let before = renderer.technique_bytes();

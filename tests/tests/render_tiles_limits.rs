@@ -82,7 +82,7 @@ fn drawn(count: usize, has_room: bool) -> Result<(), String> {
     let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
     let groom = Groom::wavy(3, 4, 6, material());
     let buffers = StrandBuffers::new(&mut backend, groom.shape, Vec3::ZERO).unwrap();
-    let section = ShadedStrands::new(&mut backend, &mut PassList::new(), buffers, groom.info.clone()).unwrap();
+    let section = ShadedStrands::new(&mut backend, buffers, groom.info.clone()).unwrap();
     let draws = vec![SectionDraw::new(&section, &groom.material, Pose::IDENTITY); count];
     let projection = rh::proj::directx::perspective(0.6, 1.0, 50.0, 0.05);
     let view = View::new(Mat4::from_translation(Vec3::NEG_Z * 3.0), projection, DepthOrder::Reverse, [64, 64]).unwrap();

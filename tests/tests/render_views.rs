@@ -10,7 +10,7 @@ use tressfx_core::backend::{DepthOrder, Format, Run};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{Pose, View, ViewError, Viewport};
-use tressfx_render::{DrawError, HairRenderer, Light, LightPlace, Lights, Material, RenderDesc, SectionDraw, ViewDraw};
+use tressfx_render::{DrawError, HairRenderer, Light, Lights, Material, RenderDesc, SectionDraw, ViewDraw};
 
 use support::{gpu, screen};
 
@@ -66,10 +66,7 @@ fn views() -> Vec<(&'static str, Mat4, Mat4, DepthOrder)> {
 fn hold(name: &str, screen: &mut Screen, view: View) {
     let groom = groom();
     screen.view = view;
-    screen.lights.lights.push(Light {
-        place: LightPlace::Point { position: Vec3::new(0.4, 0.3, 0.8), reach: 0.7 },
-        color: Vec3::new(2.0, 1.0, 0.5),
-    });
+    screen.lights.lights.push(Light::point(Vec3::new(0.4, 0.3, 0.8), 0.7, Vec3::new(2.0, 1.0, 0.5)));
     let picture = screen.hair(&[&groom]);
     let exact = screen.exact(&[&groom]);
     screen.lights.lights.pop();

@@ -14,7 +14,7 @@ use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{Camera, View};
-use tressfx_render::{Highlight, Material, Technique};
+use tressfx_render::{Highlight, Material, ShadowDesc, Technique};
 
 use hair::Grooms;
 use scenes::{Eye, Look, SCENES, Scene, Solid};
@@ -27,6 +27,11 @@ const FRAMES_OF_A_CHOICE: usize = 48;
 /// Where compilers round in two ways: by how much pixels may differ, and how many may by more.
 const TOLERANCE: f64 = 0.004;
 const DIFFERING: usize = 1000;
+
+/// Coarse shadows: scenes are small.
+fn shadows() -> Option<ShadowDesc> {
+    Some(ShadowDesc::default().texels(96, 32).cells(24))
+}
 
 fn look(look: Look) -> Material {
     Material::default().with(|m| match look {
@@ -127,7 +132,7 @@ impl Stage {
         let sections = sections(grooms, scene);
         let camera = camera(scene.eye, &points(&sections), scene.size);
         Self {
-            setup: Setup { camera, size: scene.size, technique: Technique::default(), hair_output: false },
+            setup: Setup { camera, size: scene.size, technique: Technique::default(), hair_output: false, shadows: shadows() },
             view: view(scene.eye, &camera, scene.size),
             mesh: solid(scene.solid, &camera),
             sections,
@@ -195,7 +200,8 @@ fn each_scene_by_each_technique() {
     // Whatever the validation layer says fails the run of a list.
     let watched = VulkanOptions { validation: true, ..VulkanOptions::default() };
     let vulkan = VulkanBackend::headless_with(&watched).unwrap();
-    let mut screens = [Screen::new(wgpu, |_| ()), Screen::new(Box::new(vulkan), |_| ())];
+    let shadowed = |setup: &mut Setup| setup.shadows = shadows();
+    let mut screens = [Screen::new(wgpu, shadowed), Screen::new(Box::new(vulkan), shadowed)];
     // On the CPU both backends compile the same code; on GPUs two compilers may round in two ways.
     let is_exact = screens[0].backend.caps().is_cpu;
     let (mut grooms, mut wrong) = (Grooms::default(), Vec::new());

@@ -5,15 +5,16 @@ import package::grid::{GROUP, thread_index};
 import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
 import package::section::{SectionUniform, strand_random};
-import package::view::{ViewUniform, ambient, towards, towards_eye};
+import package::view::{ViewUniform, towards, towards_eye};
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> tangents: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> visibility: array<vec4<f32>>;
 // Colour and opacity as four half floats.
-@group(0) @binding(5) var<storage, read_write> colors: array<vec2<u32>>;
+@group(0) @binding(4) var<storage, read_write> colors: array<vec2<u32>>;
+// As `shadow_light` leaves it.
+@if(shadows) @group(0) @binding(5) var<storage, read> arriving: array<vec4<u32>>;
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
@@ -26,24 +27,39 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-20));
 }
 
-// Where light comes from through the groom: a vector and a constant, from the frame of the strand. See `visibility.rs`.
-fn visible_light(i: u32, strand: u32, tangent: vec3<f32>) -> vec4<f32> {
-    let local = visibility[i / section.strands * section.guides + strand % section.guides];
-    let growth = unit(posed(strand + section.strands) - posed(strand));
-    // Where a strand grows straight on, there is no direction across: it fades.
-    let side = growth - tangent * dot(growth, tangent);
-    let across = side * min(inverseSqrt(max(dot(side, side), 1e-20)), 5.0);
-    return vec4(local.x * tangent + local.y * across + local.z * cross(tangent, across), local.w);
+// What arrives at a vertex: of light from everywhere from the direction `d` the share `sky.w + sky.xyz . d`, and the shares of the lights.
+struct Arriving {
+    sky: vec4<f32>,
+    lights: array<vec4<f32>, 2>,
 }
 
-fn lit(point: vec3<f32>, fibre: Fibre, open: vec4<f32>) -> vec3<f32> {
+@if(shadows)
+fn arriving_at(i: u32) -> Arriving {
+    let all = arriving[i];
+    let roots = array(unpack4x8unorm(all.z), unpack4x8unorm(all.w));
+    return Arriving(vec4(unpack2x16float(all.x), unpack2x16float(all.y)), array(roots[0] * roots[0], roots[1] * roots[1]));
+}
+
+@if(!shadows)
+fn arriving_at(i: u32) -> Arriving {
+    return Arriving(vec4(0.0, 0.0, 0.0, 1.0), array(vec4(1.0), vec4(1.0)));
+}
+
+// The mean over all directions of the light from above and below that arrives.
+fn around(open: vec4<f32>) -> vec3<f32> {
+    let mean = 0.5 * (view.sky.rgb + view.ground.rgb);
+    let slope = 0.5 * (view.sky.rgb - view.ground.rgb);
+    return max(mix(mean, open.w * mean + open.y / 3.0 * slope, section.self_shadow), vec3(0.0));
+}
+
+fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     let eye = unit(towards_eye(view.eye, point));
-    let around = mix(1.0, saturate(open.w), section.self_shadow);
-    var sum = around * ambient(view.sky, view.ground, unit(open.xyz)) * fibre.albedo;
-    for (var i = 0u; i < view.light_count; i++) {
-        let light = towards(view.lights[i], point);
-        let arriving = light.w * mix(1.0, saturate(open.w + dot(open.xyz, light.xyz)), section.self_shadow);
-        sum += view.lights[i].color.rgb * arriving * scatter(fibre, eye, light.xyz);
+    var shares = arriving_at(i);
+    var sum = around(shares.sky) * fibre.albedo;
+    for (var light = 0u; light < view.light_count; light++) {
+        let from_light = towards(view.lights[light], point);
+        let arrives = from_light.w * mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
+        sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz);
     }
     return sum;
 }
@@ -65,7 +81,7 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
     let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
-    var color = clamp(skin * lit(point, fibre, visible_light(i, strand, tangent)), vec3(0.0), vec3(BRIGHTEST));
+    var color = clamp(skin * lit(point, fibre, i), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);
     }

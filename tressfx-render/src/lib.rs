@@ -2,6 +2,12 @@
 //! pixel.
 //!
 //! ```text
+//! hair.render.shadow_bounds     compute  one thread a strand: the box of the hair as each light sees it     HairRenderer
+//! hair.render.shadow_splat      compute  one thread a strand segment: what it takes of the light in cells   HairRenderer
+//! hair.render.shadow_sum        compute  one thread a row of cells: what is taken up to each                HairRenderer
+//! hair.render.shadow_sky        compute  one thread a cell: what arrives there from everywhere              HairRenderer
+//! hair.render.shadow_light      compute  one thread a strand vertex: what arrives there of sky and lights   HairRenderer
+//! hair.render.shadow_opaque     compute  one thread a strand vertex: what the opaque scene leaves of a light HairRenderer
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
 //! hair.render.nearest           compute  one thread a strand segment: the K nearest, where lists are bounded Technique::Ppll
@@ -45,6 +51,7 @@ mod resolved;
 mod segments;
 mod shade;
 mod shaders;
+mod shadow;
 mod shortcut;
 mod strands;
 mod technique;
@@ -52,11 +59,10 @@ mod tiles;
 pub mod uniforms;
 mod usage;
 mod views;
-mod visibility;
 
 pub use auto::AutoDesc;
 pub use counters::Counters;
-pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS};
+pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth};
 pub use material::{Highlight, Material, MaterialError};
 pub use output::HAIR_FORMAT;
 pub use ppll::{K_RANGE, PpllDesc, Tail};
@@ -64,6 +70,7 @@ pub use renderer::{DrawError, HairRenderer, RenderDesc, Targets};
 pub use resolved::TILE;
 pub use segments::Fill;
 pub use shaders::VIEW_MODULE;
+pub use shadow::{SHADOW_MODULES, ShadowDesc};
 pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
 pub use technique::Technique;

@@ -1,6 +1,8 @@
 //! Light on hair and scene.
 
 use glam::Vec3;
+use tressfx_core::id::TextureId;
+use tressfx_core::view::View;
 
 /// Lights that a frame can have.
 pub const MAX_LIGHTS: usize = 8;
@@ -22,6 +24,17 @@ pub enum LightPlace {
     },
 }
 
+/// The depth of the opaque scene as a light sees it: an engine's shadow map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpaqueDepth {
+    /// [`Format::Depth32F`](tressfx_core::backend::Format::Depth32F), in the order of depth of the view.
+    pub depth: TextureId,
+    /// From the light.
+    pub view: View,
+    /// How much farther than the scene hair may be and still be lit, in the unit of the world.
+    pub bias: f32,
+}
+
 /// One light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
@@ -29,12 +42,33 @@ pub struct Light {
     pub place: LightPlace,
     /// Radiance that a white matte surface facing it would have: linear RGB, not negative.
     pub color: Vec3,
+    /// Whether hair casts its shadow on hair in this light, where the renderer makes shadows.
+    pub casts: bool,
+    /// What casts its shadow on hair beside hair. Where nothing is known, light does not pass behind the roots of strands.
+    pub opaque: Option<OpaqueDepth>,
 }
 
 impl Light {
-    /// A light infinitely far in the direction `towards`.
+    /// A light infinitely far in the direction `towards`, with shadows.
     pub fn directional(towards: Vec3, color: Vec3) -> Self {
-        Self { place: LightPlace::Directional { towards }, color }
+        Self { place: LightPlace::Directional { towards }, color, casts: true, opaque: None }
+    }
+
+    /// A light at a point, with shadows; it has its full colour up to the distance `reach`.
+    pub fn point(position: Vec3, reach: f32, color: Vec3) -> Self {
+        Self { place: LightPlace::Point { position, reach }, color, casts: true, opaque: None }
+    }
+
+    /// The same with shadows of an opaque scene.
+    #[must_use]
+    pub fn opaque(self, opaque: OpaqueDepth) -> Self {
+        Self { opaque: Some(opaque), ..self }
+    }
+
+    /// The same, with or without shadows.
+    #[must_use]
+    pub fn casts(self, casts: bool) -> Self {
+        Self { casts, ..self }
     }
 }
 

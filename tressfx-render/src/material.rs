@@ -45,9 +45,10 @@ pub struct Material {
     pub tilt: f32,
     /// How much the tilt differs from strand to strand: it breaks the highlights up.
     pub tilt_variation: f32,
-    /// How much of the shadow that the groom casts on itself in its rest pose is seen: 0 lights every strand as if it were
-    /// alone.
+    /// How much of the shadow that falls on the hair is seen: 0 lights every strand as if it were alone.
     pub self_shadow: f32,
+    /// The share of light that a fibre takes from what is behind it, 0 to 1. Hair scatters most light forwards.
+    pub shadow_alpha: f32,
     /// How much darker hair is at its root, where little light gets to.
     pub root_shade: f32,
     /// Share of a strand's length, from the root, over which that darkness fades.
@@ -71,6 +72,7 @@ impl Default for Material {
             tilt: 4.0,
             tilt_variation: 0.5,
             self_shadow: 1.0,
+            shadow_alpha: 0.3,
             root_shade: 0.35,
             root_extent: 0.2,
         }
@@ -119,6 +121,7 @@ impl Material {
             ("tilt", self.tilt, -30.0..=30.0),
             ("tilt_variation", self.tilt_variation, 0.0..=1.0),
             ("self_shadow", self.self_shadow, 0.0..=1.0),
+            ("shadow_alpha", self.shadow_alpha, 0.0..=1.0),
             ("root_shade", self.root_shade, 0.0..=1.0),
             ("root_extent", self.root_extent, 0.001..=1.0),
         ];

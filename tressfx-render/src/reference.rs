@@ -12,12 +12,19 @@ mod projection;
 mod resolve;
 mod ribbon;
 mod shade;
+mod shadow;
+mod shadow_bounds;
+mod shadow_light;
+mod shadow_sky;
+mod shadow_splat;
+mod shadow_sum;
 mod shortcut_colors;
 mod shortcut_depths;
 mod shortcut_resolve;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use crate::lights::MAX_LIGHTS;
 use crate::uniforms::SectionUniform;
 
 pub use coverage::coverage;
@@ -26,9 +33,29 @@ pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, 
 pub use nearest::nearest;
 pub use resolve::{resolve, resolve_at_places, resolve_with_tail};
 pub use shade::shade;
+pub use shadow::{ShadowCell, ShadowCells};
+pub use shadow_bounds::shadow_bounds;
+pub use shadow_light::{Shadows, shadow_light};
+pub use shadow_sky::shadow_sky;
+pub use shadow_splat::shadow_splat;
+pub use shadow_sum::shadow_sum;
 pub use shortcut_colors::shortcut_colors;
 pub use shortcut_depths::{LayerPlace, Layers, shortcut_depths};
 pub use shortcut_resolve::shortcut_resolve;
+
+/// What arrives at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arriving {
+    /// Of light from everywhere, from the direction `d`, the share `w + (x, y, z) . d`.
+    pub sky: DVec4,
+    /// The shares of the lights.
+    pub lights: [f64; MAX_LIGHTS],
+}
+
+impl Arriving {
+    /// All of it.
+    pub const ALL: Self = Self { sky: DVec4::W, lights: [1.0; MAX_LIGHTS] };
+}
 
 /// The strands of a section on the CPU: what its buffers hold.
 #[derive(Clone, Copy, Debug)]
@@ -39,8 +66,8 @@ pub struct Strands<'a> {
     pub positions: &'a [[f32; 4]],
     /// As [`StrandBuffers::tangents`](tressfx_core::strand_buffers::StrandBuffers::tangents).
     pub tangents: &'a [[f32; 4]],
-    /// As [`StrandInfo::visibility`](crate::StrandInfo::visibility).
-    pub visibility: &'a [[f32; 4]],
+    /// What arrives at each vertex, in the order of the positions; none where nothing shades.
+    pub arriving: Option<&'a [Arriving]>,
     /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
     pub thickness: &'a [f32],
 }
@@ -73,7 +100,7 @@ impl Strands<'_> {
     }
 
     /// The position of a vertex in the world: transformed by the pose of the section.
-    fn posed(&self, index: usize) -> DVec3 {
+    pub fn posed(&self, index: usize) -> DVec3 {
         matrix(&self.uniform.pose).transform_point3(xyz(&self.positions[index]))
     }
 }

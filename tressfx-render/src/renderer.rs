@@ -4,12 +4,14 @@ use tressfx_core::backend::{Backend, Format, Owner};
 use tressfx_core::error::{Error, Result};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{PassList, Ticket};
+use tressfx_core::shader::Binding;
 use tressfx_core::view::{PoseError, View};
 
 use crate::counters::Counters;
-use crate::lights::MAX_LIGHTS;
+use crate::lights::{Lights, MAX_LIGHTS};
 use crate::output::Output;
 use crate::shade::Shade;
+use crate::shadow::{ShadowDesc, Shadows};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance};
 use crate::views::{MAX_VIEWS, ViewDraw, Views};
@@ -34,12 +36,21 @@ pub struct RenderDesc {
     pub technique: Technique,
     /// Whether depth and coverage of the hair are written too: see [`Targets::hair`].
     pub hair_output: bool,
+    /// How shadows are made; none lights every strand as if it were alone.
+    pub shadows: Option<ShadowDesc>,
 }
 
 impl RenderDesc {
-    /// The default technique: lists of fragments for each pixel.
+    /// The default technique, lists of fragments for each pixel, and shadows.
     pub fn new(size: [u32; 2], target: Format) -> Self {
-        Self { size, target, technique: Technique::default(), hair_output: false }
+        let shadows = Some(ShadowDesc::default());
+        Self { size, target, technique: Technique::default(), hair_output: false, shadows }
+    }
+
+    /// The same with other shadows, or with none.
+    #[must_use]
+    pub fn shadows(self, shadows: impl Into<Option<ShadowDesc>>) -> Self {
+        Self { shadows: shadows.into(), ..self }
     }
 
     /// The same with another technique.
@@ -134,6 +145,9 @@ pub enum DrawError {
 pub struct HairRenderer {
     desc: RenderDesc,
     views: Views,
+    shadows: Option<Shadows>,
+    /// The light in which shadows were cast for the frame that is drawn next.
+    cast: Option<Lights>,
     shade: Shade,
     order: Box<dyn TechniqueInstance>,
     /// Frees everything above.
@@ -144,13 +158,15 @@ impl HairRenderer {
     /// Compiles the kernels and makes the buffers whose size depends on that of the view.
     ///
     /// # Errors
-    /// A `k` that the technique does not take, what the device lacks, or what the backend says.
+    /// A `k` that the technique does not take, a setting of shadows out of its range, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
-        let ((order, views, shade), owner) = Owner::build(backend, |backend| {
+        let ((order, views, shadows, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.output())?;
-            Ok::<_, Error>((order, Views::new(backend)?, Shade::new(backend)?))
+            let shadows = desc.shadows.map(|desc| Shadows::new(backend, &desc)).transpose()?;
+            let shade = Shade::new(backend, shadows.is_some())?;
+            Ok::<_, Error>((order, Views::new(backend)?, shadows, shade))
         })?;
-        Ok(Self { desc: *desc, views, shade, order, owner })
+        Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, owner })
     }
 
     /// What it was made from.
@@ -174,6 +190,11 @@ impl HairRenderer {
     /// Bytes of the buffers in which the technique keeps fragments and pixels at present.
     pub fn technique_bytes(&self) -> u64 {
         self.order.bytes()
+    }
+
+    /// Bytes of the buffers in which shadows are made.
+    pub fn shadow_bytes(&self) -> u64 {
+        self.shadows.as_ref().map_or(0, Shadows::bytes)
     }
 
     /// Whether tiles draw the next frame: [`Technique::Auto`] may choose them, and lists again.
@@ -227,6 +248,35 @@ impl HairRenderer {
         self.owner.change(backend, |backend| self.order.measured(backend, counters))
     }
 
+    /// Casts the shadows of the next frame before it is drawn, so that the surfaces of the caller can be shaded with what hair leaves of the light:
+    /// see [`HairRenderer::shadow_bindings`]. [`HairRenderer::draw`] with the same sections then makes no shadows again for views in this
+    /// light. Without this call it makes them itself.
+    ///
+    /// # Errors
+    /// [`DrawError`]; nothing is written then.
+    pub fn cast(
+        &mut self,
+        list: &mut PassList,
+        lights: &Lights,
+        draws: &[SectionDraw],
+    ) -> std::result::Result<(), DrawError> {
+        check_lights(lights)?;
+        draws.iter().try_for_each(|draw| draw.pose.validate())?;
+        let Some(shadows) = &mut self.shadows else { return Ok(()) };
+        shadows.begin();
+        let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
+        draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        shadows.passes(list, 0, lights, &draws)?;
+        self.cast = Some(lights.clone());
+        Ok(())
+    }
+
+    /// What a shader binds that imports the module `hair_shadow` of [`SHADOW_MODULES`](crate::SHADOW_MODULES); nothing where the renderer makes no shadows. Right
+    /// for passes behind [`HairRenderer::cast`] and before [`HairRenderer::draw`].
+    pub fn shadow_bindings(&self) -> Vec<(&'static str, Binding)> {
+        self.shadows.iter().flat_map(Shadows::bindings).collect()
+    }
+
     /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is
     /// written.
     ///
@@ -243,17 +293,27 @@ impl HairRenderer {
         self.order.check(&draws)?;
         self.order.begin(list, views.len(), &draws);
         self.shade.begin();
+        let cast = self.cast.take();
+        if cast.is_none() {
+            self.shadows.iter_mut().for_each(Shadows::begin);
+        }
         if draws.is_empty() || views.iter().all(|draw| draw.view.is_empty()) {
             return Ok(());
         }
         self.views.upload(list, views);
         draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
-        for (index, draw) in views.iter().enumerate().filter(|(_, draw)| !draw.view.is_empty()) {
-            let view = self.views.bound(index, draw.view);
+        // What arrives does not depend on the eye: views in the same light share it.
+        let mut lit = cast.as_ref();
+        for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {
+            let view = self.views.bound(index, seen.view);
+            if let Some(shadows) = self.shadows.as_mut().filter(|_| lit != Some(seen.lights)) {
+                shadows.passes(list, 1 + index, seen.lights, &draws)?;
+                lit = Some(seen.lights);
+            }
             for draw in &draws {
                 self.shade.pass(list, &view, draw.strands)?;
             }
-            self.order.draw(list, &view, &draw.targets, &draws)?;
+            self.order.draw(list, &view, &seen.targets, &draws)?;
         }
         Ok(())
     }
@@ -263,9 +323,7 @@ impl HairRenderer {
             return Err(DrawError::Views(views.len()));
         }
         for draw in views {
-            if draw.lights.lights.len() > MAX_LIGHTS {
-                return Err(DrawError::Lights(draw.lights.lights.len()));
-            }
+            check_lights(draw.lights)?;
             match (self.desc.hair_output, draw.targets.hair) {
                 (true, None) => return Err(DrawError::NoHairTarget),
                 (false, Some(_)) => return Err(DrawError::UnusedHairTarget),
@@ -295,6 +353,10 @@ impl HairRenderer {
     }
 }
 
+fn check_lights(lights: &Lights) -> std::result::Result<(), DrawError> {
+    if lights.lights.len() > MAX_LIGHTS { Err(DrawError::Lights(lights.lights.len())) } else { Ok(()) }
+}
+
 #[cfg(test)]
 mod tests {
     use tressfx_core::null::NullBackend;
@@ -305,7 +367,7 @@ mod tests {
     use crate::shortcut::{ShortCut, ShortCutDesc};
     use crate::technique::Wanted;
     use crate::tiles::{Tiles, TilesDesc, TilesUniform};
-    use crate::uniforms::{LensUniform, LightUniform, SectionUniform, ViewUniform};
+    use crate::uniforms::{LensUniform, LightUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform, ShadowUniform, ViewUniform};
 
     fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
         let desc = ShortCutDesc::default().k(k).ordered(ordered);
@@ -319,7 +381,7 @@ mod tests {
     #[test]
     fn structs_are_laid_out_as_in_the_wgsl() {
         let mut backend = NullBackend::default();
-        let shade = Shade::new(&mut backend).unwrap();
+        let shade = Shade::new(&mut backend, true).unwrap();
         let ppll = Ppll::new(&mut backend, &PpllDesc::default(), [64, 64], Format::Rgba16F).unwrap();
         let shortcut = shortcut(&mut backend, 3, false);
         let [fill, resolve, composite] = ppll.shaders();
@@ -338,6 +400,13 @@ mod tests {
         for shader in [fill, resolve] {
             shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
         }
+        let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
+        let [frames @ .., opaque] = shadows.shaders();
+        for shader in frames {
+            shader.check_layout::<ShadowUniform>().unwrap();
+            shader.check_layout::<ShadowFrameUniform>().unwrap();
+        }
+        opaque.check_layout::<OpaqueUniform>().unwrap();
         let tiles = tiles(&mut backend);
         let [points, depth, bin, alloc, blend, reopen] = tiles.shaders();
         for shader in [points, depth, bin, alloc, blend, reopen] {
@@ -354,7 +423,7 @@ mod tests {
     #[test]
     fn every_kernel_fits_the_limits_of_webgpu() {
         let mut backend = NullBackend::default();
-        let shade = Shade::new(&mut backend).unwrap();
+        let shade = Shade::new(&mut backend, true).unwrap();
         for k in K_RANGE {
             let desc = PpllDesc { k, ..PpllDesc::default() };
             let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
@@ -367,6 +436,8 @@ mod tests {
             let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
         }
+        let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
+        assert!(shadows.shaders().into_iter().all(|shader| shader.storage_buffers() <= 5));
         let counts = tiles(&mut backend).shaders().map(|shader| shader.storage_buffers());
         assert_eq!(counts.into_iter().max(), Some(8), "{counts:?}: what `check` asks for");
         let lists = PpllDesc::default().fill(Fill::Raster);

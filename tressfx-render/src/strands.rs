@@ -4,7 +4,6 @@ use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, Owner};
 use tressfx_core::error::{Error, Result};
 use tressfx_core::id::{BufferId, TextureId};
-use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::Strands;
@@ -13,7 +12,6 @@ use tressfx_core::view::Pose;
 use crate::material::Material;
 use crate::uniforms::SectionUniform;
 use crate::views::BoundView;
-use crate::visibility;
 
 /// How many segments a prediction samples.
 const MAX_SAMPLES: usize = 4096;
@@ -34,11 +32,6 @@ pub struct StrandInfo {
     pub metres_per_unit: f32,
     /// Radius of a fibre in metres with which the strands cover the groom well: for a [`Material`] that gives none.
     pub fitting_radius: f32,
-    /// How much light reaches a vertex of a guide in the rest pose, `vertex * guides + guide`. From the direction `d` it is
-    /// `w + (x * tangent + y * across + z * cross(tangent, across)) . d`, from 0 to 1, where `across` is the part of the
-    /// strand's first edge that is perpendicular to the tangent, of length 1 unless it is nearly 0. `[0, 0, 0, 1]` is a
-    /// strand that nothing shades.
-    pub visibility: Vec<[f32; 4]>,
     /// An even sample of the segments of the rest pose: both ends, and the shares of the full width there. From it the
     /// number of fragments is predicted.
     pub sample: Vec<([Vec3; 2], [f32; 2])>,
@@ -56,10 +49,7 @@ impl StrandInfo {
         };
         let count = segments.min(MAX_SAMPLES);
         let sample = (0..count).map(|i| segment(sampled(i, count, segments))).collect();
-        let fitting_radius = fitting_radius(strands);
-        let visibility = visibility::visibility(strands, fitting_radius / strands.metres_per_unit);
-        let visibility = strands.interleave(&visibility);
-        Self { metres_per_unit: strands.metres_per_unit, fitting_radius, visibility, sample }
+        Self { metres_per_unit: strands.metres_per_unit, fitting_radius: fitting_radius(strands), sample }
     }
 
     /// Radius of a fibre in the unit of the positions.
@@ -102,47 +92,37 @@ pub struct ShadedStrands {
     pub(crate) info: StrandInfo,
     /// [`SectionUniform`].
     pub(crate) uniform: BufferId,
-    /// [`StrandInfo::visibility`].
-    pub(crate) visibility: BufferId,
     /// `vec2<u32>` a vertex of every strand: four half floats, colour and opacity.
     pub(crate) colors: BufferId,
+    /// `vec4<u32>` a vertex of every strand: what arrives of the sky and of each light, see `shadow_light.wgsl`.
+    pub(crate) arriving: BufferId,
     /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
     owner: Owner,
 }
 
 impl ShadedStrands {
-    /// Makes what rendering needs beside `buffers`, which stay the caller's, and uploads it with the next run of `list`.
+    /// Makes what rendering needs beside `buffers`, which stay the caller's.
     ///
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size.
-    ///
-    /// # Panics
-    /// If `info` is of another groom than `buffers`.
-    pub fn new(
-        backend: &mut dyn Backend,
-        list: &mut PassList,
-        buffers: StrandBuffers,
-        mut info: StrandInfo,
-    ) -> Result<Self> {
+    pub fn new(backend: &mut dyn Backend, buffers: StrandBuffers, mut info: StrandInfo) -> Result<Self> {
         let shape = buffers.shape;
-        assert_eq!(info.visibility.len() as u32, shape.guide_vertices(), "the info of a section and its buffers");
         let vertex_bytes = |bytes: u64, count: u32| (bytes * u64::from(count)).max(16);
         let made = Owner::build(backend, |backend| {
             let uniform = BufferDesc::uniform("hair.render.section", size_of::<SectionUniform>() as u64);
-            let visibility = vertex_bytes(16, shape.guide_vertices());
             let colors = vertex_bytes(8, shape.strand_vertices());
+            let arriving = vertex_bytes(16, shape.strand_vertices());
             Ok::<_, Error>([
                 backend.create_buffer(&uniform)?,
-                backend.create_buffer(&BufferDesc::storage("hair.render.visibility", visibility))?,
                 backend.create_buffer(&BufferDesc::storage("hair.render.colors", colors))?,
+                backend.create_buffer(&BufferDesc::storage("hair.render.arriving", arriving))?,
             ])
         });
-        let ([uniform, visibility, colors], owner) = made?;
-        list.upload(visibility, 0, &info.visibility);
+        let ([uniform, colors, arriving], owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
-        Ok(Self { buffers, info, uniform, visibility, colors, sphere, owner })
+        Ok(Self { buffers, info, uniform, colors, arriving, sphere, owner })
     }
 
     /// What the module `strands` of the shaders binds.
@@ -160,6 +140,11 @@ impl ShadedStrands {
     /// Colours as `hair.render.shade` leaves them: for tests and tools.
     pub fn colors(&self) -> BufferId {
         self.colors
+    }
+
+    /// What arrives at each vertex of the sky and of each light, as `hair.render.shadow_light` leaves it: for tests and tools.
+    pub fn arriving(&self) -> BufferId {
+        self.arriving
     }
 
     /// Frees what [`ShadedStrands::new`] made.

@@ -7,6 +7,7 @@ use tressfx_core::view::{Pose, View};
 
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::material::Material;
+pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
 
 gpu_struct! {
@@ -98,7 +99,7 @@ gpu_struct! {
         pub diffuse: f32,
         /// Brightness that differs from strand to strand.
         pub variation: f32,
-        /// How much the shadow of the groom on itself darkens.
+        /// How much shadows darken.
         pub self_shadow: f32,
         /// Strength and exponent of the white highlight.
         pub primary: [f32; 2],
@@ -112,11 +113,26 @@ gpu_struct! {
         pub root_shade: f32,
         /// Where it ends.
         pub root_extent: f32,
+        /// The share of light that a fibre takes on its way to others.
+        pub shadow_alpha: f32,
+        /// Nothing.
+        pub unused: u32,
+        /// Nothing.
+        pub unused_too: [u32; 2],
     }
 }
 
 fn with(v: Vec3, w: f32) -> [f32; 4] {
     v.extend(w).to_array()
+}
+
+impl LightUniform {
+    /// The lights; those beyond [`MAX_LIGHTS`] are left out, and places without one are dark.
+    pub(crate) fn all(lights: &Lights) -> [Self; MAX_LIGHTS] {
+        let mut all = [Self { place: [0.0; 4], color: [0.0; 4] }; MAX_LIGHTS];
+        all.iter_mut().zip(&lights.lights).for_each(|(slot, light)| *slot = light.into());
+        all
+    }
 }
 
 impl From<&crate::Light> for LightUniform {
@@ -151,8 +167,6 @@ impl From<&View> for LensUniform {
 impl ViewUniform {
     /// What the shaders are given for a view. Lights beyond [`MAX_LIGHTS`] are left out.
     pub fn new(view: &View, lights: &Lights) -> Self {
-        let mut array = [LightUniform { place: [0.0; 4], color: [0.0; 4] }; MAX_LIGHTS];
-        array.iter_mut().zip(&lights.lights).for_each(|(slot, light)| *slot = light.into());
         Self {
             view_projection: view.view_projection().to_cols_array_2d(),
             lens: view.into(),
@@ -164,7 +178,7 @@ impl ViewUniform {
             target_size: view.viewport().target(),
             light_count: lights.lights.len().min(MAX_LIGHTS) as u32,
             unused: 0,
-            lights: array,
+            lights: LightUniform::all(lights),
         }
     }
 }
@@ -192,6 +206,9 @@ impl SectionUniform {
             tilt_variation: material.tilt_variation,
             root_shade: material.root_shade,
             root_extent: material.root_extent,
+            shadow_alpha: material.shadow_alpha,
+            unused: 0,
+            unused_too: [0; 2],
         }
     }
 }

@@ -1,5 +1,6 @@
 // Opaque meshes beside the hair: heads, bodies, the capsules that hair collides with. Matte, with a soft edge of shadow.
 
+@if(shadows) import package::hair_shadow::{hair_light, hair_sky};
 import package::view::{ViewUniform, ambient, towards, towards_eye};
 
 struct Surface {
@@ -29,6 +30,22 @@ fn place(@builtin(vertex_index) i: u32) -> Varying {
     return Varying(view.view_projection * vec4(point, 1.0), point, normal);
 }
 
+// What hair leaves of each light.
+@if(shadows)
+fn arriving_at(point: vec3<f32>) -> array<f32, 8> {
+    let open = hair_sky(point);
+    var shares = array<f32, 8>();
+    for (var light = 0u; light < view.light_count; light++) {
+        shares[light] = hair_light(light, point, open);
+    }
+    return shares;
+}
+
+@if(!shadows)
+fn arriving_at(point: vec3<f32>) -> array<f32, 8> {
+    return array(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+}
+
 @fragment
 fn scene(in: Varying) -> @location(0) vec4<f32> {
     let eye = normalize(towards_eye(view.eye, in.point));
@@ -37,6 +54,7 @@ fn scene(in: Varying) -> @location(0) vec4<f32> {
     let normal = select(-outside, outside, dot(outside, eye) >= -0.05);
     let rim = surface.look.x * pow(1.0 - saturate(dot(normal, eye)), 4.0);
     let wrap = surface.look.w;
+    var shares = arriving_at(in.point);
     var sum = surface.color.rgb * ambient(view.sky, view.ground, normal);
     for (var i = 0u; i < view.light_count; i++) {
         let light = towards(view.lights[i], in.point);
@@ -44,7 +62,7 @@ fn scene(in: Varying) -> @location(0) vec4<f32> {
         let diffuse = surface.color.rgb * saturate((facing + wrap) / (1.0 + wrap));
         let glint = pow(saturate(dot(normal, normalize(light.xyz + eye))), surface.look.z);
         let sheen = vec3(surface.look.y * glint * saturate(facing) + rim * saturate(facing + 0.3));
-        sum += view.lights[i].color.rgb * light.w * (diffuse + sheen);
+        sum += view.lights[i].color.rgb * light.w * shares[i] * (diffuse + sheen);
     }
     return vec4(sum, 1.0);
 }

@@ -2,4 +2,5 @@
 
 #![forbid(unsafe_code)]
 
+pub mod light_depth;
 pub mod scene;

@@ -63,9 +63,9 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
 
 /// Records the scene, and behind its read-back the hair, for its colours.
 fn requests(list: &mut PassList, run: &Run, studio: &mut Studio, args: &Render) -> Result<Tickets> {
-    studio.draw_scene(list, run.head(&args.scene))?;
+    let lights = studio.draw_scene(list, run.head(&args.scene), run.sim.pose())?;
     let (color, depth) = (list.read_texture(studio.targets.color), list.read_texture(studio.targets.depth));
-    let counters = studio.draw_hair(list, run.sim.pose())?;
+    let counters = studio.draw_hair(list, run.sim.pose(), &lights)?;
     let positions = run.sim.read_positions(list);
     let colors = studio.sections.iter().zip(run.sim.buffers()).map(|((strands, _), buffers)| {
         list.read_buffer(strands.colors(), 0, 8 * u64::from(buffers.shape.strand_vertices()))

@@ -7,10 +7,10 @@ use tressfx_core::error::{Label, Result};
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
-use tressfx_core::shader::{Module, RasterPipeline, Shader, ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, Module, RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::uniforms::ViewUniform;
-use tressfx_render::{Light, Lights, Targets, VIEW_MODULE};
+use tressfx_render::{Light, Lights, SHADOW_MODULES, Targets, VIEW_MODULE};
 
 const LABEL: &str = "viewer.scene";
 
@@ -90,7 +90,7 @@ pub struct SceneMesh {
     vertices: BufferId,
     indices: BufferId,
     uniform: BufferId,
-    index_count: u32,
+    pub(crate) index_count: u32,
 }
 
 /// A mesh in a frame.
@@ -115,27 +115,28 @@ pub struct ScenePass {
 }
 
 impl ScenePass {
-    /// Compiles the shaders for a colour target and an order of depth.
+    /// Compiles the shaders for a colour target and an order of depth, with shadows of hair on the meshes or without.
     ///
     /// # Errors
     /// What the backend says.
-    pub fn new(backend: &mut dyn Backend, target: Format, order: DepthOrder) -> Result<Self> {
+    pub fn new(backend: &mut dyn Backend, target: Format, order: DepthOrder, has_shadows: bool) -> Result<Self> {
         let (target, depth) = ((target, Blend::Replace), Depth::TestWrite(order));
         let mesh = ("scene", include_str!("../shaders/scene.wgsl"));
         let backdrop = ("backdrop", include_str!("../shaders/backdrop.wgsl"));
         Ok(Self {
             order,
-            mesh: raster(backend, LABEL, mesh, target, depth)?,
-            backdrop: raster(backend, "viewer.backdrop", backdrop, target, depth)?,
+            mesh: raster(backend, LABEL, mesh, target, depth, has_shadows)?,
+            backdrop: raster(backend, "viewer.backdrop", backdrop, target, depth, false)?,
             view: uniform_buffer::<ViewUniform>(backend, "viewer.scene.view")?,
             gradient: uniform_buffer::<uniform::Backdrop>(backend, "viewer.backdrop")?,
         })
     }
 
-    /// Clears the targets and draws meshes before the backdrop.
+    /// Clears the targets and draws meshes before the backdrop. `shadows` is `HairRenderer::shadow_bindings` where the pass was made with
+    /// shadows, else nothing.
     ///
     /// # Errors
-    /// None that can be reached: the names of bindings are those of the shaders.
+    /// Shadows that are missing, or that nobody asked for.
     ///
     /// # Panics
     /// If the view has another order of depth than the pass.
@@ -147,6 +148,7 @@ impl ScenePass {
         targets: &Targets,
         backdrop: &Backdrop,
         meshes: &[MeshDraw],
+        shadows: &[(&'static str, Binding)],
     ) -> Result<()> {
         assert_eq!(view.depth(), self.order, "the order of depth of the view and of the scene pass");
         list.upload(self.view, 0, &[ViewUniform::new(view, lights)]);
@@ -158,20 +160,15 @@ impl ScenePass {
             .color(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))
             .depth(targets.depth, Load::Clear(self.order.far()));
         for draw in meshes {
-            pass = pass.draw(self.mesh(draw.mesh)?);
+            pass = pass.draw(self.mesh(draw.mesh, shadows)?);
         }
         let gradient = self.backdrop.bind(&[("gradient", self.gradient.into())])?;
         list.raster(pass.draw(Draw::new(&self.backdrop, &gradient, 3, 1)));
         Ok(())
     }
 
-    fn mesh(&self, mesh: &SceneMesh) -> Result<Draw> {
-        let bindings = self.mesh.bind(&[
-            ("view", self.view.into()),
-            ("surface", mesh.uniform.into()),
-            ("vertices", mesh.vertices.into()),
-            ("indices", mesh.indices.into()),
-        ])?;
+    fn mesh(&self, mesh: &SceneMesh, shadows: &[(&'static str, Binding)]) -> Result<Draw> {
+        let bindings = self.mesh.bind(&[&mesh.bindings(self.view.into())[..], shadows].concat())?;
         Ok(Draw::new(&self.mesh, &bindings, mesh.index_count, 1))
     }
 
@@ -201,6 +198,15 @@ impl SceneMesh {
         list.upload(made.vertices, 0, &vertices);
         list.upload(made.indices, 0, &mesh.indices);
         Ok(made)
+    }
+
+    pub(crate) fn bindings(&self, view: Binding) -> [(&'static str, Binding); 4] {
+        [
+            ("view", view),
+            ("surface", self.uniform.into()),
+            ("vertices", self.vertices.into()),
+            ("indices", self.indices.into()),
+        ]
     }
 
     /// Frees it.
@@ -252,9 +258,11 @@ fn raster(
     root: Module,
     target: (Format, Blend),
     depth: Depth,
+    has_shadows: bool,
 ) -> Result<RasterPipeline> {
-    let source = ShaderSource { label, root, library: &[VIEW_MODULE] };
-    let shader = Shader::new(&source, &Specialization::new())?.into();
+    const LIBRARY: [Module; 4] = [VIEW_MODULE, SHADOW_MODULES[0], SHADOW_MODULES[1], SHADOW_MODULES[2]];
+    let source = ShaderSource { label, root, library: &LIBRARY };
+    let shader = Shader::new(&source, &Specialization::new().feature("shadows", has_shadows))?.into();
     backend.create_raster(&RasterDesc::new(shader).target(target.0, target.1).depth(depth))
 }
 
@@ -270,7 +278,7 @@ mod tests {
 
     #[test]
     fn structs_are_laid_out_as_in_the_wgsl() {
-        let pass = ScenePass::new(&mut NullBackend::default(), Format::Rgba16F, DepthOrder::Reverse).unwrap();
+        let pass = ScenePass::new(&mut NullBackend::default(), Format::Rgba16F, DepthOrder::Reverse, true).unwrap();
         pass.mesh.shader.check_layout::<ViewUniform>().unwrap();
         pass.mesh.shader.check_layout::<uniform::Surface>().unwrap();
         pass.backdrop.shader.check_layout::<uniform::Backdrop>().unwrap();

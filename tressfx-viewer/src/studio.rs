@@ -9,6 +9,7 @@ use tressfx_render::{
     Counters, HAIR_FORMAT, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
     Technique, ViewDraw,
 };
+use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
@@ -25,6 +26,7 @@ pub(crate) struct Studio {
     pub(crate) drawn: RenderStats,
     pub(crate) view: View,
     lights: Lights,
+    light_depth: LightDepth,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
     pub(crate) sections: Vec<(ShadedStrands, Material)>,
@@ -42,42 +44,45 @@ impl Studio {
             targets = targets.hair(texture("hair", HAIR_FORMAT)?);
         }
         let mut uploads = PassList::new();
-        let meshes = mesh
-            .iter()
-            .chain(&run.groom.mesh)
-            .map(|mesh| SceneMesh::new(backend, &mut uploads, mesh))
-            .collect::<Result<_, _>>()?;
+        let solids: Vec<&Mesh> = mesh.iter().chain(&run.groom.mesh).collect();
+        let made = solids.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh));
+        let meshes = made.collect::<Result<_, _>>()?;
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
-            let section = ShadedStrands::new(backend, &mut uploads, *buffers, StrandInfo::new(strands))?;
+            let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
             sections.push((section, *run.params.material(index)));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
-        let scene = ScenePass::new(backend, TARGET, view.depth())?;
-        backend.run(&uploads)?;
+        let scene = ScenePass::new(backend, TARGET, view.depth(), true)?;
         let (lights, drawn) = (studio_lights(), RenderStats::default());
-        Ok(Self { targets, drawn, view, lights, scene, meshes, sections, renderer })
+        let light_depth = LightDepth::new(backend, &lights, &solids)?;
+        backend.run(&uploads)?;
+        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, sections, renderer })
     }
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
     pub(crate) fn draw(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Ticket> {
-        self.draw_scene(list, head)?;
-        self.draw_hair(list, pose)
+        let lights = self.draw_scene(list, head, pose)?;
+        self.draw_hair(list, pose, &lights)
     }
 
-    /// Records what is opaque.
-    pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose) -> Result<()> {
+    /// Records the shadows and what is opaque. Gives the lights with what they see of it.
+    pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
+        let lights = self.light_depth.draw(list, &self.lights, &self.meshes, head)?;
+        self.renderer.cast(list, &lights, &draws(&self.sections, pose))?;
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
-        let Self { view, lights, targets, scene, .. } = self;
-        Ok(scene.draw(list, view, lights, targets, &Backdrop::default(), &meshes)?)
+        let shadows = self.renderer.shadow_bindings();
+        let Self { view, targets, scene, .. } = self;
+        scene.draw(list, view, &lights, targets, &Backdrop::default(), &meshes, &shadows)?;
+        Ok(lights)
     }
 
     /// Records the hair over it.
-    pub(crate) fn draw_hair(&mut self, list: &mut PassList, pose: Pose) -> Result<Ticket> {
-        let Self { view, lights, targets, renderer, .. } = self;
+    pub(crate) fn draw_hair(&mut self, list: &mut PassList, pose: Pose, lights: &Lights) -> Result<Ticket> {
+        let Self { view, targets, renderer, .. } = self;
         if let Some(hair) = targets.hair {
             // Pixels without hair keep what they have: no coverage.
             list.raster(RasterPass::new("studio.clear_hair").color(hair, Load::Clear([0.0; 4])));

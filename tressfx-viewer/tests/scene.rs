@@ -23,8 +23,8 @@ fn picture(backend: &mut WgpuBackend, meshes: &[Mesh]) -> Vec<Vec3> {
     let targets = Targets::new(texture("color", Format::Rgba16F), texture("depth", Format::Depth32F));
     let camera = Camera { eye: Vec3::Z * 3.0, target: Vec3::ZERO, fov: 0.6, ..Camera::around(&[Vec3::ONE], SIZE) };
     let view = Camera { near: 0.05, far: 50.0, ..camera }.view(SIZE).unwrap();
-    let scene = ScenePass::new(backend, Format::Rgba16F, view.depth()).unwrap();
-    scene.draw(&mut list, &view, &studio_lights(), &targets, &Backdrop::default(), &draws).unwrap();
+    let scene = ScenePass::new(backend, Format::Rgba16F, view.depth(), false).unwrap();
+    scene.draw(&mut list, &view, &studio_lights(), &targets, &Backdrop::default(), &draws, &[]).unwrap();
     let ticket = list.read_texture(targets.color);
     backend.run(&list).unwrap();
     let bytes = backend.read(ticket).ready().expect("it has run");

@@ -22,6 +22,10 @@ struct SectionUniform {
     tilt_variation: f32,
     root_shade: f32,
     root_extent: f32,
+    // The share of light that a fibre takes on its way to others.
+    shadow_alpha: f32,
+    unused: u32,
+    unused_too: vec2<u32>,
 }
 
 // A number in [0, 1) that looks random, the same on every device: PCG-RXS-M-XS.

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, DVec4};
 use tressfx_core::view::View;
 
 use super::projection::Projection;
-use super::{Strands, matrix, pair, xyz};
+use super::{Arriving, Strands, matrix, pair, xyz};
 use crate::lights::{Light, LightPlace, Lights};
 
 /// Colour and opacity of a strand vertex.
@@ -25,9 +25,9 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
     };
     let skin = 1.0 - f64::from(of.root_shade) * (1.0 - smoothstep(along / f64::from(of.root_extent)));
     let point = strands.posed(index);
-    let open = visible_light(strands, strand, vertex, fibre.tangent);
+    let arriving = strands.arriving.map_or(Arriving::ALL, |arriving| arriving[index]);
     let eye = Projection::new(view).towards_eye(point);
-    let color = skin * lit(lights, f64::from(of.self_shadow), point, eye, &fibre, open);
+    let color = skin * lit(lights, f64::from(of.self_shadow), point, eye, &fibre, &arriving);
     color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
 }
 
@@ -40,29 +40,18 @@ struct Fibre {
     secondary: DVec2,
 }
 
-/// The light that comes through the groom, as a vector and a constant.
-fn visible_light(strands: &Strands, strand: u32, vertex: u32, tangent: DVec3) -> DVec4 {
-    let of = &strands.uniform;
-    let local = strands.visibility[(vertex * of.guides + strand % of.guides) as usize].map(f64::from);
-    let growth = strands.posed(strands.index(strand, 1)) - strands.posed(strands.index(strand, 0));
-    let growth = growth.normalize_or_zero();
-    let side = growth - tangent * growth.dot(tangent);
-    let across = side * side.length().recip().min(5.0);
-    (local[0] * tangent + local[1] * across + local[2] * tangent.cross(across)).extend(local[3])
-}
-
-fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibre, open: DVec4) -> DVec3 {
-    let seen = |open: f64| 1.0 + self_shadow * (open.clamp(0.0, 1.0) - 1.0);
-    let above = 0.5 + 0.5 * open.truncate().normalize_or_zero().y;
-    let ambient = seen(open.w) * lights.ground.as_dvec3().lerp(lights.sky.as_dvec3(), above) * fibre.albedo;
-    lights.lights.iter().fold(ambient, |sum, light| {
-        let (towards, arriving) = towards(light, point);
-        let arriving = arriving * seen(open.w + open.truncate().dot(towards));
-        sum + light.color.as_dvec3() * arriving * scatter(fibre, eye, towards)
+fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibre, arriving: &Arriving) -> DVec3 {
+    let [sky, ground] = [lights.sky, lights.ground].map(|light| light.as_dvec3());
+    let (mean, slope) = (0.5 * (sky + ground), 0.5 * (sky - ground));
+    let around = mean.lerp(arriving.sky.w * mean + arriving.sky.y / 3.0 * slope, self_shadow).max(DVec3::ZERO);
+    lights.lights.iter().zip(arriving.lights).fold(around * fibre.albedo, |sum, (light, share)| {
+        let (towards, strength) = towards(light, point);
+        let strength = strength * (1.0 + self_shadow * (share - 1.0));
+        sum + light.color.as_dvec3() * strength * scatter(fibre, eye, towards)
     })
 }
 
-fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
+pub(super) fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
     match light.place {
         LightPlace::Directional { towards } => (towards.as_dvec3().normalize(), 1.0),
         LightPlace::Point { position, reach } => {

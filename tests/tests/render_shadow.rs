@@ -1,0 +1,182 @@
+//! What arrives of the sky and of lights at strand vertices: against f64, and against what is known of it.
+
+mod support;
+
+use glam::{DVec4, Vec3};
+use tressfx_conformance::render::{Groom, Random, Screen};
+use tressfx_conformance::run_and_read;
+use tressfx_core::pass::PassList;
+use tressfx_core::view::Pose;
+use tressfx_render::reference::{Arriving, Shadows, shadow_light};
+use tressfx_render::uniforms::ShadowUniform;
+use tressfx_render::{Light, Lights, Material, SectionDraw, ShadowDesc, ViewDraw};
+
+use support::screen;
+
+const DESC: fn() -> ShadowDesc = || ShadowDesc::default().texels(96, 48).cells(24);
+
+/// What the kernels leave at each vertex of a groom, and what the references do.
+fn arriving(screen: &mut Screen, desc: &ShadowDesc, groom: &Groom) -> (Vec<Arriving>, Vec<Arriving>) {
+    let mut list = PassList::new();
+    let section = screen.section(&mut list, groom);
+    let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+    let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+    screen.renderer.draw(&mut list, &[view], &draws).unwrap();
+    let ticket = list.read_buffer(section.arriving(), 0, 16 * groom.positions.len() as u64);
+    let uniform = ShadowUniform::new(desc, &screen.lights, &draws);
+    let bytes = run_and_read(&mut *screen.backend, &list, ticket);
+    let lights = screen.lights.clone();
+    let strands = groom.reference();
+    let shadows = Shadows::new(&uniform, &lights, &[strands]);
+    let expected = (0..groom.positions.len()).map(|i| shadow_light(&shadows, strands.posed(i))).collect();
+    (bytes.chunks(16).map(decoded).collect(), expected)
+}
+
+fn decoded(bytes: &[u8]) -> Arriving {
+    let half = |i: usize| half::f16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]).to_f64();
+    let share = |i: usize| (f64::from(bytes[8 + i]) / 255.0).powi(2);
+    Arriving { sky: DVec4::new(half(0), half(1), half(2), half(3)), lights: std::array::from_fn(share) }
+}
+
+fn shadowed(desc: ShadowDesc) -> Option<Screen> {
+    screen(|setup| setup.shadows = Some(desc))
+}
+
+/// The error that a share of `of_all` differences is below.
+fn quantile(mut differences: Vec<f64>, of_all: f64) -> f64 {
+    differences.sort_by(f64::total_cmp);
+    differences[((differences.len() - 1) as f64 * of_all) as usize]
+}
+
+#[test]
+fn every_vertex_is_as_in_f64() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    screen.lights = Lights {
+        sky: Vec3::ONE,
+        ground: Vec3::splat(0.2),
+        lights: vec![
+            Light::directional(Vec3::new(0.3, 1.0, 0.4), Vec3::ONE),
+            Light::point(Vec3::new(2.0, 1.0, 1.5), 1.0, Vec3::ONE),
+            Light::directional(Vec3::X, Vec3::ONE).casts(false),
+            Light::point(Vec3::new(0.1, 0.1, 0.0), 1.0, Vec3::ONE),
+            Light::directional(Vec3::new(-1.0, 0.2, 0.0), Vec3::ONE),
+        ],
+    };
+    let pose = Pose { rotation: glam::Quat::from_rotation_z(0.4), translation: Vec3::new(0.1, 0.2, -0.3) };
+    let material = Material::default().with(|m| m.fibre_radius = Some(0.002));
+    let groom = Groom { pose, ..Groom::wavy(700, 16, 1, material) };
+    let (found, expected) = arriving(&mut screen, &DESC(), &groom);
+    for light in 0..5 {
+        let shares = || expected.iter().map(|expected| expected.lights[light]);
+        let off = found.iter().zip(&expected).map(|(a, b)| (a.lights[light] - b.lights[light]).abs()).collect();
+        let (low, error) = (shares().fold(1.0, f64::min), quantile(off, 0.99));
+        eprintln!("light {light}: from {low:.3}, 99 of 100 vertices within {error:.4}");
+        // Bytes that hold square roots are 1/255 apart: twice that in the share. A piece on the border of two cells may be in either.
+        assert!(error < 0.006, "{error}");
+        assert!(if light == 2 { low == 1.0 } else { low < 0.5 }, "light {light} casts: {low}");
+    }
+    let off = found.iter().zip(&expected).map(|(a, b)| (a.sky - b.sky).abs().max_element()).collect();
+    let error = quantile(off, 0.99);
+    eprintln!("sky: 99 of 100 vertices within {error:.4}");
+    assert!(error < 0.003, "{error}");
+}
+
+/// A slab of fibres in the plane across y, all along x, that is 1 deep and in which a ray along y meets `crossings` fibres in the mean.
+fn slab(crossings: f32, radius: f32) -> Groom {
+    let mut random = Random(5);
+    let count = (crossings / (2.0 * radius)) as u32;
+    let fibre = |_| {
+        let (y, z) = (random.unit(), random.unit());
+        (0..9).map(|i| Vec3::new(i as f32 / 8.0, y, z)).collect()
+    };
+    let strands: Vec<Vec<Vec3>> = (0..count).map(fibre).collect();
+    Groom::new(&strands, Material::default().with(|m| m.fibre_radius = Some(radius)))
+}
+
+#[test]
+fn light_falls_off_in_a_slab_as_the_number_of_fibres_says() {
+    let Some(mut screen) = shadowed(ShadowDesc::default()) else { return };
+    screen.lights.lights = vec![Light::directional(Vec3::Y, Vec3::ONE)];
+    let groom = slab(8.0, 0.0005);
+    let (found, _) = arriving(&mut screen, &ShadowDesc::default(), &groom);
+    // Away from the sides, and from the skin that the roots stand for.
+    let inside = |p: &[f32; 4]| (0.2..0.8).contains(&p[2]) && (0.3..0.8).contains(&p[0]);
+    for depth in [0.1f32, 0.3, 0.5, 0.9] {
+        let near = |p: &[f32; 4]| (1.0 - p[1] - depth).abs() < 0.02;
+        let shares: Vec<f64> = groom.positions.iter().zip(&found).filter(|(p, _)| inside(p) && near(p)).map(|(_, a)| a.lights[0]).collect();
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        // Fibres that lie at random: the number on a ray has a Poisson distribution, and each takes 0.3.
+        let expected = f64::from(-0.3 * 8.0 * depth).exp();
+        eprintln!("depth {depth}: {mean:.4} of {} vertices, {expected:.4} expected", shares.len());
+        assert!(shares.len() > 50 && (mean / expected - 1.0).abs() < 0.06, "{mean} is not {expected}");
+    }
+}
+
+#[test]
+fn a_single_strand_shades_itself_hardly() {
+    let Some(mut screen) = shadowed(ShadowDesc::default()) else { return };
+    screen.lights.lights = vec![Light::directional(Vec3::new(0.2, 1.0, 0.3), Vec3::ONE)];
+    let strand: Vec<Vec3> = (0..16).map(|i| Vec3::new(0.3 * i as f32 / 15.0, 0.02 * i as f32, 0.0)).collect();
+    let groom = Groom::new(&[strand], Material::default().with(|m| m.fibre_radius = Some(0.00006)));
+    let (found, _) = arriving(&mut screen, &ShadowDesc::default(), &groom);
+    let darkest = found[2..].iter().map(|arriving| arriving.lights[0]).fold(1.0, f64::min);
+    assert!(darkest > 0.97, "{darkest}");
+}
+
+#[test]
+fn two_runs_give_the_same_bits() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let groom = Groom::wavy(300, 12, 3, Material::default());
+    let (one, _) = arriving(&mut screen, &DESC(), &groom);
+    let (other, _) = arriving(&mut screen, &DESC(), &groom);
+    assert_eq!(one, other);
+}
+
+#[test]
+fn nothing_that_casts_and_no_sky_means_no_pass_but_the_last() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let groom = Groom::wavy(20, 8, 3, Material::default());
+    let mut labels = |lights: Lights| {
+        screen.lights = lights;
+        let mut list = PassList::new();
+        let section = screen.section(&mut list, &groom);
+        let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+        let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+        screen.renderer.draw(&mut list, &[view, view], &draws).unwrap();
+        list.labels().filter_map(|label| label.strip_prefix("hair.render.shadow_")).collect::<Vec<_>>()
+    };
+    let light = Light::directional(Vec3::Y, Vec3::ONE);
+    let lights = |sky, casts| Lights { sky, ground: Vec3::ZERO, lights: vec![light.casts(casts)] };
+    assert_eq!(labels(lights(Vec3::ONE, true)), ["bounds", "splat", "sum", "sky", "light"], "two views share them");
+    assert_eq!(labels(lights(Vec3::ZERO, true)), ["bounds", "splat", "sum", "light"]);
+    assert_eq!(labels(lights(Vec3::ONE, false)), ["bounds", "splat", "sky", "light"]);
+    assert_eq!(labels(lights(Vec3::ZERO, false)), ["light"]);
+}
+
+#[test]
+fn hair_that_is_nowhere_tiny_or_huge_gets_light_that_is_a_share() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let point = vec![vec![Vec3::ZERO; 4]];
+    let huge = vec![(0..4).map(|i| Vec3::splat(1e11 * i as f32)).collect()];
+    let lost = vec![vec![Vec3::splat(f32::NAN); 4], (0..4).map(|i| Vec3::Y * i as f32).collect()];
+    for (name, strands) in [("a point", point), ("huge", huge), ("not a number", lost)] {
+        let groom = Groom::new(&strands, Material::default());
+        let (found, _) = arriving(&mut screen, &DESC(), &groom);
+        for one in found {
+            assert!(one.sky.is_finite() && one.lights.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {one:?}");
+        }
+    }
+}
+
+#[test]
+fn lights_where_no_light_should_be_leave_shares() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let groom = Groom::wavy(50, 8, 3, Material::default());
+    let places = [Vec3::ZERO, Vec3::splat(1e30), Vec3::splat(f32::NAN), screen.view.lens().eye.truncate()];
+    for place in places {
+        screen.lights.lights = vec![Light::point(place, 1.0, Vec3::ONE), Light::directional(place, Vec3::ONE)];
+        let (found, _) = arriving(&mut screen, &DESC(), &groom);
+        let sound = |one: &Arriving| one.lights.iter().all(|share| (0.0..=1.0).contains(share)) && one.sky.is_finite();
+        assert!(found.iter().all(sound), "{place}");
+    }
+}

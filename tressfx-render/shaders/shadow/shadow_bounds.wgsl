@@ -1,0 +1,49 @@
+// The box of the hair in each frame. One thread a strand, of an even sample.
+
+import package::frames::{ShadowUniform, in_frame, order_of};
+import package::grid::{GROUP, thread_index};
+import package::ribbon::is_sound;
+import package::section::SectionUniform;
+
+@group(0) @binding(0) var<uniform> shadow: ShadowUniform;
+@group(0) @binding(1) var<uniform> section: SectionUniform;
+@group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read_write> bounds: array<atomic<u32>>;
+
+fn note(at: u32, value: f32) {
+    // Most strands change nothing, and need no turn.
+    if order_of(value) > atomicLoad(&bounds[at]) {
+        atomicMax(&bounds[at], order_of(value));
+    }
+}
+
+fn note_box(frame: u32, low: vec3<f32>, high: vec3<f32>) {
+    for (var axis = 0u; axis < 3u; axis++) {
+        note(6u * frame + axis, high[axis]);
+        note(6u * frame + 3u + axis, -low[axis]);
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+                 @builtin(local_invocation_index) lane: u32) {
+    let strand = thread_index(group, groups, lane);
+    if strand >= min(section.strands, shadow.samples) {
+        return;
+    }
+    for (var frame = shadow.first; frame < shadow.end; frame++) {
+        var low = vec3(3e38);
+        var high = vec3(-3e38);
+        for (var vertex = 0u; vertex < section.vertices; vertex++) {
+            let local = positions[vertex * section.strands + strand].xyz;
+            if is_sound(local) {
+                let at = in_frame(shadow.frames[frame], (section.pose * vec4(local, 1.0)).xyz);
+                low = min(low, at);
+                high = max(high, at);
+            }
+        }
+        if low.x <= high.x {
+            note_box(frame, low, high);
+        }
+    }
+}
