@@ -342,6 +342,20 @@ impl Screen {
         bytemuck::pod_collect_to_vec(&crate::run_and_read(&mut *self.backend, &list, ticket))
     }
 
+    /// The depth of meshes from a view: the texture, and what is in it.
+    pub fn depth_from(&mut self, view: &View, meshes: &[&Mesh]) -> (TextureId, Vec<f32>) {
+        let [color, depth] = targets(&mut *self.backend, view.viewport().target());
+        let pass = ScenePass::new(&mut *self.backend, Format::Rgba16F, view.depth()).expect("a scene pass");
+        let mut list = PassList::new();
+        let made: Vec<_> =
+            meshes.iter().map(|mesh| SceneMesh::new(&mut *self.backend, &mut list, mesh).expect("a mesh")).collect();
+        pass.draw(&mut list, view, glam::Mat4::IDENTITY, &Targets::new(color, depth), &made);
+        let ticket = list.read_texture(depth);
+        let bytes = crate::run_and_read(&mut *self.backend, &list, ticket);
+        made.into_iter().for_each(|mesh| mesh.destroy(&mut *self.backend));
+        (depth, bytemuck::pod_collect_to_vec(&bytes))
+    }
+
     fn over(&mut self, mut list: PassList, views: &[View], grooms: &[&Groom]) -> Picture {
         let sections: Vec<_> = grooms.iter().map(|groom| self.placed(&mut list, groom)).collect();
         let pairs = sections.iter().zip(grooms);

@@ -93,8 +93,7 @@ fn a_renderer_its_size_and_its_sections() {
     let strands = random_strands(8, 8, 1, 1);
     let info = StrandInfo::new(&strands);
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
-    let (section, failures) =
-        backend.fail_everywhere(|backend| ShadedStrands::new(backend, buffers, info.clone()));
+    let (section, failures) = backend.fail_everywhere(|backend| ShadedStrands::new(backend, buffers, info.clone()));
     assert!(failures > 1, "{failures} creations");
     let tiles = RenderDesc::new([64, 48], Format::Rgba16F).technique(TilesDesc::default());
     let mut tiles = HairRenderer::new(&mut backend, &tiles).unwrap();

@@ -3,13 +3,16 @@
 mod support;
 
 use glam::{DVec4, Vec3};
+use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Random, Screen};
 use tressfx_conformance::run_and_read;
+use tressfx_core::backend::DepthOrder;
 use tressfx_core::pass::PassList;
-use tressfx_core::view::Pose;
-use tressfx_render::reference::{Arriving, Shadows, shadow_light};
-use tressfx_render::uniforms::ShadowUniform;
-use tressfx_render::{Light, Lights, Material, SectionDraw, ShadowDesc, ViewDraw};
+use tressfx_core::shape::Ellipsoid;
+use tressfx_core::view::{Pose, View};
+use tressfx_render::reference::{Arriving, Shadows, shadow_light, shadow_opaque};
+use tressfx_render::uniforms::{OpaqueUniform, ShadowUniform};
+use tressfx_render::{Light, Lights, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
 
 use support::screen;
 
@@ -103,7 +106,13 @@ fn light_falls_off_in_a_slab_as_the_number_of_fibres_says() {
     let inside = |p: &[f32; 4]| (0.2..0.8).contains(&p[2]) && (0.3..0.8).contains(&p[0]);
     for depth in [0.1f32, 0.3, 0.5, 0.9] {
         let near = |p: &[f32; 4]| (1.0 - p[1] - depth).abs() < 0.02;
-        let shares: Vec<f64> = groom.positions.iter().zip(&found).filter(|(p, _)| inside(p) && near(p)).map(|(_, a)| a.lights[0]).collect();
+        let shares: Vec<f64> = groom
+            .positions
+            .iter()
+            .zip(&found)
+            .filter(|(p, _)| inside(p) && near(p))
+            .map(|(_, a)| a.lights[0])
+            .collect();
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
         // Fibres that lie at random: the number on a ray has a Poisson distribution, and each takes 0.3.
         let expected = f64::from(-0.3 * 8.0 * depth).exp();
@@ -163,7 +172,10 @@ fn hair_that_is_nowhere_tiny_or_huge_gets_light_that_is_a_share() {
         let groom = Groom::new(&strands, Material::default());
         let (found, _) = arriving(&mut screen, &DESC(), &groom);
         for one in found {
-            assert!(one.sky.is_finite() && one.lights.iter().all(|share| (0.0..=1.0).contains(share)), "{name}: {one:?}");
+            assert!(
+                one.sky.is_finite() && one.lights.iter().all(|share| (0.0..=1.0).contains(share)),
+                "{name}: {one:?}"
+            );
         }
     }
 }
@@ -178,5 +190,45 @@ fn lights_where_no_light_should_be_leave_shares() {
         let (found, _) = arriving(&mut screen, &DESC(), &groom);
         let sound = |one: &Arriving| one.lights.iter().all(|share| (0.0..=1.0).contains(share)) && one.sky.is_finite();
         assert!(found.iter().all(sound), "{place}");
+    }
+}
+
+/// Where a ball hides the light, and where not: from a map of what the light sees, and by hand.
+#[test]
+fn hair_behind_a_ball_is_dark() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let towards = Vec3::new(1.0, 0.5, 0.3).normalize();
+    let (center, radius) = (Vec3::new(0.1, 0.2, 0.0), 0.25f32);
+    let eye = glam::camera::rh::view::look_to_mat4(center + 3.0 * towards, -towards, Vec3::Y);
+    let reverse = [false, true];
+    for (is_reverse, order) in reverse.into_iter().zip([DepthOrder::Standard, DepthOrder::Reverse]) {
+        let planes = if is_reverse { [6.0, 1.0] } else { [1.0, 6.0] };
+        let lens = glam::camera::rh::proj::directx::orthographic(-0.5, 0.5, -0.5, 0.5, planes[0], planes[1]);
+        let view = View::new(eye, lens, order, [256; 2]).unwrap();
+        let ball = Mesh::ellipsoid(&Ellipsoid { center, radii: Vec3::splat(radius) }, 96);
+        let depth = screen.depth_from(&view, &[&ball]);
+        let opaque = OpaqueDepth { depth: depth.0, view, bias: 0.01 };
+        screen.lights.lights = vec![Light::directional(towards, Vec3::ONE).opaque(opaque)];
+        // Fibres that take nothing: what is dark is dark for the ball.
+        let material = Material::default().with(|m| m.shadow_alpha = 0.0);
+        let groom = Groom::wavy(400, 24, 9, material);
+        let (found, _) = arriving(&mut screen, &DESC(), &groom);
+        let uniform = OpaqueUniform::new(&opaque, 0);
+        let (mut dark, mut lit) = (0, 0);
+        for (position, arriving) in groom.positions.iter().zip(&found) {
+            let off = Vec3::from_slice(&position[..3]) - center;
+            let past = (off - towards * off.dot(towards)).length();
+            let expected = shadow_opaque(&uniform, &depth.1, (off + center).as_dvec3());
+            // A byte, and a comparison that rounding decides.
+            assert!((arriving.lights[0] - expected).abs() < 0.12, "{arriving:?}: {expected}");
+            // Four texels are half lit.
+            if (past - radius).abs() < 0.016 || off.length() < radius + 0.02 {
+                continue;
+            }
+            let is_dark = past < radius && off.dot(towards) < 0.0;
+            assert_eq!(arriving.lights[0], if is_dark { 0.0 } else { 1.0 }, "{position:?}");
+            *(if is_dark { &mut dark } else { &mut lit }) += 1;
+        }
+        assert!(dark > 300 && lit > 3000, "{dark} dark, {lit} lit");
     }
 }

@@ -132,7 +132,13 @@ impl Stage {
         let sections = sections(grooms, scene);
         let camera = camera(scene.eye, &points(&sections), scene.size);
         Self {
-            setup: Setup { camera, size: scene.size, technique: Technique::default(), hair_output: false, shadows: shadows() },
+            setup: Setup {
+                camera,
+                size: scene.size,
+                technique: Technique::default(),
+                hair_output: false,
+                shadows: shadows(),
+            },
             view: view(scene.eye, &camera, scene.size),
             mesh: solid(scene.solid, &camera),
             sections,

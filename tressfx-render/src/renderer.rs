@@ -5,10 +5,11 @@ use tressfx_core::error::{Error, Result};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shader::Binding;
-use tressfx_core::view::{PoseError, View};
+use tressfx_core::view::View;
 
 use crate::counters::Counters;
-use crate::lights::{Lights, MAX_LIGHTS};
+use crate::draw_error::{DrawError, check_lights};
+use crate::lights::Lights;
 use crate::output::Output;
 use crate::shade::Shade;
 use crate::shadow::{ShadowDesc, Shadows};
@@ -99,42 +100,6 @@ impl Targets {
     pub fn hair(self, hair: TextureId) -> Self {
         Self { hair: Some(hair), ..self }
     }
-}
-
-/// Why hair is not drawn.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DrawError {
-    /// More views than a frame can have.
-    #[error("hair.render: {0} views, a frame can have {MAX_VIEWS}")]
-    Views(usize),
-    /// More lights than a view can have.
-    #[error("hair.render: {0} lights, a view can have {MAX_LIGHTS}")]
-    Lights(usize),
-    /// A view is larger than what the renderer was made for.
-    #[error("hair.render: a view of {view:?} pixels, the renderer was made for {renderer:?}")]
-    Size {
-        /// The view's size.
-        view: [u32; 2],
-        /// The renderer's.
-        renderer: [u32; 2],
-    },
-    /// A view names no texture for depth and coverage of the hair.
-    #[error(
-        "hair.render: the renderer was made to write depth and coverage of hair (`hair_output`), a view has no target for them"
-    )]
-    NoHairTarget,
-    /// A view names a texture for depth and coverage of the hair that the renderer does not write.
-    #[error(
-        "hair.render: a view has a target for depth and coverage of hair, the renderer was made without `hair_output`"
-    )]
-    UnusedHairTarget,
-    /// The pose of a section is not valid.
-    #[error("hair.render: {0}")]
-    Pose(#[from] PoseError),
-    /// A rule of the contract is broken, or the device fails.
-    #[error(transparent)]
-    Backend(#[from] Error),
 }
 
 /// Draws hair: strands are shaded for a view and turned into fragments, which a [`Technique`] sorts and blends.
@@ -353,10 +318,6 @@ impl HairRenderer {
     }
 }
 
-fn check_lights(lights: &Lights) -> std::result::Result<(), DrawError> {
-    if lights.lights.len() > MAX_LIGHTS { Err(DrawError::Lights(lights.lights.len())) } else { Ok(()) }
-}
-
 #[cfg(test)]
 mod tests {
     use tressfx_core::null::NullBackend;
@@ -367,7 +328,9 @@ mod tests {
     use crate::shortcut::{ShortCut, ShortCutDesc};
     use crate::technique::Wanted;
     use crate::tiles::{Tiles, TilesDesc, TilesUniform};
-    use crate::uniforms::{LensUniform, LightUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform, ShadowUniform, ViewUniform};
+    use crate::uniforms::{
+        LensUniform, LightUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform, ShadowUniform, ViewUniform,
+    };
 
     fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
         let desc = ShortCutDesc::default().k(k).ordered(ordered);

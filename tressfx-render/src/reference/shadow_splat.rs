@@ -23,7 +23,8 @@ pub fn shadow_splat(shadow: &ShadowUniform, index: usize, bounds: [DVec3; 2], se
                 }
             }
         }
-        let roots = strands.uniform.guides.min(counted);
+        let has_skin = shadow.frames[index].has_skin == 1;
+        let roots = if has_skin { strands.uniform.guides.min(counted) } else { 0 };
         for strand in (0..roots).filter(|&strand| strands.is_sound(strand, 0) && strands.is_sound(strand, 1)) {
             skin(&mut made, shadow, strands, strand, f64::from(roots));
         }

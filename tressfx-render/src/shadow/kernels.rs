@@ -38,13 +38,7 @@ impl Pass {
         Ok(Self { kernel, bound: Bound::new() })
     }
 
-    fn record(
-        &mut self,
-        list: &mut PassList,
-        key: Key,
-        grid: Grid,
-        resources: &[(&str, Binding)],
-    ) -> Result<()> {
+    fn record(&mut self, list: &mut PassList, key: Key, grid: Grid, resources: &[(&str, Binding)]) -> Result<()> {
         let bindings = self.bound.get(key, || self.kernel.bind(resources))?;
         list.compute(&self.kernel, &bindings, grid);
         Ok(())
@@ -147,22 +141,13 @@ impl Kernels {
 
     /// What arrives in each cell from everywhere.
     pub(super) fn sky(&mut self, list: &mut PassList, set: usize, memory: &Memory, grid: Grid) -> Result<()> {
-        let resources = [
-            ("shadow", memory.uniforms.binding(set)),
-            ("cells", memory.cells.into()),
-            ("sky", memory.sky.into()),
-        ];
+        let resources =
+            [("shadow", memory.uniforms.binding(set)), ("cells", memory.cells.into()), ("sky", memory.sky.into())];
         self.sky.record(list, (set, None, None), grid, &resources)
     }
 
     /// What arrives at each vertex of a section.
-    pub(super) fn light(
-        &mut self,
-        list: &mut PassList,
-        set: usize,
-        draw: &SectionDraw,
-        memory: &Memory,
-    ) -> Result<()> {
+    pub(super) fn light(&mut self, list: &mut PassList, set: usize, draw: &SectionDraw, memory: &Memory) -> Result<()> {
         let strands = draw.strands;
         let own = [
             ("section", strands.uniform.into()),

@@ -24,7 +24,8 @@ gpu_struct! {
 }
 
 impl OpaqueUniform {
-    pub(super) fn new(scene: &OpaqueDepth, light: usize) -> Self {
+    /// What the shader is given for the light of this number.
+    pub fn new(scene: &OpaqueDepth, light: usize) -> Self {
         let viewport = scene.view.viewport();
         Self {
             lens: (&scene.view).into(),

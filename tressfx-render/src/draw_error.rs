@@ -1,0 +1,48 @@
+//! Why hair is not drawn.
+
+use tressfx_core::error::Error;
+use tressfx_core::view::PoseError;
+
+use crate::lights::{Lights, MAX_LIGHTS};
+use crate::views::MAX_VIEWS;
+
+/// Why hair is not drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DrawError {
+    /// More views than a frame can have.
+    #[error("hair.render: {0} views, a frame can have {MAX_VIEWS}")]
+    Views(usize),
+    /// More lights than a view can have.
+    #[error("hair.render: {0} lights, a view can have {MAX_LIGHTS}")]
+    Lights(usize),
+    /// A view is larger than what the renderer was made for.
+    #[error("hair.render: a view of {view:?} pixels, the renderer was made for {renderer:?}")]
+    Size {
+        /// The view's size.
+        view: [u32; 2],
+        /// The renderer's.
+        renderer: [u32; 2],
+    },
+    /// A view names no texture for depth and coverage of the hair.
+    #[error(
+        "hair.render: the renderer was made to write depth and coverage of hair (`hair_output`), a view has no target for them"
+    )]
+    NoHairTarget,
+    /// A view names a texture for depth and coverage of the hair that the renderer does not write.
+    #[error(
+        "hair.render: a view has a target for depth and coverage of hair, the renderer was made without `hair_output`"
+    )]
+    UnusedHairTarget,
+    /// The pose of a section is not valid.
+    #[error("hair.render: {0}")]
+    Pose(#[from] PoseError),
+    /// A rule of the contract is broken, or the device fails.
+    #[error(transparent)]
+    Backend(#[from] Error),
+}
+
+/// Whether a view can have these lights.
+pub(crate) fn check_lights(lights: &Lights) -> Result<(), DrawError> {
+    if lights.lights.len() > MAX_LIGHTS { Err(DrawError::Lights(lights.lights.len())) } else { Ok(()) }
+}
