@@ -17,8 +17,8 @@ use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Fill, HairRenderer, Lights, MAX_LIGHTS, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc,
-    StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
+    Fill, HairRenderer, Light, Lights, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
+    ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
@@ -65,7 +65,18 @@ fn what_has_no_file_has_its_defaults_too() {
     let Wind { velocity, half_angle, gust_period } = Wind::default();
     let PpllDesc { k, max_node_bytes, count_limit, fill, .. } = PpllDesc::default();
     let shortcut = ShortCutDesc::default();
-    let tables: [(&str, &[(&str, String)]); 4] = [
+    let ShadowDesc { texels, layers, cells, lights, samples, .. } = ShadowDesc::default();
+    let tables: [(&str, &[(&str, String)]); 5] = [
+        (
+            "Shadows",
+            &[
+                ("texels", texels.to_string()),
+                ("layers", layers.to_string()),
+                ("cells", cells.to_string()),
+                ("lights", lights.to_string()),
+                ("samples", samples.to_string()),
+            ],
+        ),
         (
             "Strands",
             &[
@@ -144,10 +155,12 @@ fn everything() -> PassList {
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
     let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+    let map = OpaqueDepth { depth: texture(Format::Depth32F), view, bias: 0.01 };
     let section = ShadedStrands::new(&mut backend, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
-    let lights = Lights::default();
+    let light = Light::directional(glam::Vec3::Y, glam::Vec3::ONE).opaque(map);
+    let lights = Lights { sky: glam::Vec3::ONE, lights: vec![light], ..Lights::default() };
     let techniques: [Technique; 8] = [
         PpllDesc::default().into(),
         // No room for all fragments.

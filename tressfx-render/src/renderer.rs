@@ -111,8 +111,8 @@ pub struct HairRenderer {
     desc: RenderDesc,
     views: Views,
     shadows: Option<Shadows>,
-    /// The light in which shadows were cast for the frame that is drawn next.
-    cast: Option<Lights>,
+    /// The light in which shadows were cast for the frame that is drawn next, and whether there is any.
+    cast: Option<(Lights, bool)>,
     shade: Shade,
     order: Box<dyn TechniqueInstance>,
     /// Frees everything above.
@@ -231,8 +231,8 @@ impl HairRenderer {
         shadows.begin();
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
         draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
-        shadows.passes(list, 0, lights, &draws)?;
-        self.cast = Some(lights.clone());
+        let has_any = shadows.passes(list, 0, lights, &draws)?;
+        self.cast = Some((lights.clone(), has_any));
         Ok(())
     }
 
@@ -268,15 +268,16 @@ impl HairRenderer {
         self.views.upload(list, views);
         draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
         // What arrives does not depend on the eye: views in the same light share it.
-        let mut lit = cast.as_ref();
+        let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));
         for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {
             let view = self.views.bound(index, seen.view);
-            if let Some(shadows) = self.shadows.as_mut().filter(|_| lit != Some(seen.lights)) {
-                shadows.passes(list, 1 + index, seen.lights, &draws)?;
-                lit = Some(seen.lights);
+            let is_new = lit.is_none_or(|(lights, _)| lights != seen.lights);
+            if let Some(shadows) = self.shadows.as_mut().filter(|_| is_new) {
+                lit = Some((seen.lights, shadows.passes(list, 1 + index, seen.lights, &draws)?));
             }
+            let is_shadowed = lit.is_some_and(|(_, has_any)| has_any);
             for draw in &draws {
-                self.shade.pass(list, &view, draw.strands)?;
+                self.shade.pass(list, &view, draw.strands, is_shadowed)?;
             }
             self.order.draw(list, &view, &seen.targets, &draws)?;
         }
@@ -349,12 +350,12 @@ mod tests {
         let shortcut = shortcut(&mut backend, 3, false);
         let [fill, resolve, composite] = ppll.shaders();
         let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
-        for shader in [&*shade.kernel.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
+        for shader in [&*shade.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
             shader.check_layout::<ViewUniform>().unwrap();
             shader.check_layout::<LensUniform>().unwrap();
             shader.check_layout::<LightUniform>().unwrap();
         }
-        for shader in [&*shade.kernel.shader, fill, depths, colors] {
+        for shader in [&*shade.open.shader, fill, depths, colors] {
             shader.check_layout::<SectionUniform>().unwrap();
         }
         for shader in [fill, resolve, depths, shortcut_resolve] {
@@ -387,12 +388,13 @@ mod tests {
     fn every_kernel_fits_the_limits_of_webgpu() {
         let mut backend = NullBackend::default();
         let shade = Shade::new(&mut backend, true).unwrap();
+        let shade = shade.shadowed.unwrap();
         for k in K_RANGE {
             let desc = PpllDesc { k, ..PpllDesc::default() };
             let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
             let [fill, resolve, composite] = ppll.shaders();
             assert_eq!(resolve.features, format!("shaded K={k}"));
-            let counts = [&*shade.kernel.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
+            let counts = [&*shade.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
             assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
         }
         for (k, ordered) in ShortCutDesc::K_RANGE.flat_map(|k| [(k, false), (k, true)]) {

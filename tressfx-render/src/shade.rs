@@ -13,25 +13,37 @@ use crate::views::BoundView;
 
 #[derive(Debug)]
 pub(crate) struct Shade {
-    pub(crate) kernel: Kernel,
-    has_shadows: bool,
-    /// By view and section.
-    bound: Bound<(usize, BufferId)>,
+    /// Where all light arrives.
+    pub(crate) open: Kernel,
+    /// Where shadows are made.
+    pub(crate) shadowed: Option<Kernel>,
+    /// By view, section, and whether it is shadowed.
+    bound: Bound<(usize, BufferId, bool)>,
 }
 
 impl Shade {
     pub(crate) fn new(backend: &mut dyn Backend, has_shadows: bool) -> Result<Self> {
         let root = ("shade", include_str!("../shaders/shade.wgsl"));
-        let specialization = Specialization::new().feature("shadows", has_shadows);
-        let kernel = compute(backend, "hair.render.shade", root, &SHARED, &specialization)?;
-        Ok(Self { kernel, has_shadows, bound: Bound::new() })
+        let mut kernel = |shadows| {
+            let specialization = Specialization::new().feature("shadows", shadows);
+            compute(backend, "hair.render.shade", root, &SHARED, &specialization)
+        };
+        let shadowed = has_shadows.then(|| kernel(true)).transpose()?;
+        Ok(Self { open: kernel(false)?, shadowed, bound: Bound::new() })
     }
 
     pub(crate) fn begin(&mut self) {
         self.bound.begin_frame();
     }
 
-    pub(crate) fn pass(&mut self, list: &mut PassList, view: &BoundView, strands: &ShadedStrands) -> Result<()> {
+    /// `is_shadowed`: what arrives at the strands has been found.
+    pub(crate) fn pass(
+        &mut self,
+        list: &mut PassList,
+        view: &BoundView,
+        strands: &ShadedStrands,
+        is_shadowed: bool,
+    ) -> Result<()> {
         let resources = [
             ("view", view.uniform),
             ("section", strands.uniform.into()),
@@ -40,9 +52,12 @@ impl Shade {
             ("colors", strands.colors.into()),
             ("arriving", strands.arriving.into()),
         ];
-        let used = if self.has_shadows { &resources[..] } else { &resources[..5] };
-        let bindings = self.bound.get((view.index, strands.colors), || self.kernel.bind(used))?;
-        list.compute(&self.kernel, &bindings, Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP));
+        let (kernel, used) = match &self.shadowed {
+            Some(shadowed) if is_shadowed => (shadowed, &resources[..]),
+            _ => (&self.open, &resources[..5]),
+        };
+        let bindings = self.bound.get((view.index, strands.colors, is_shadowed), || kernel.bind(used))?;
+        list.compute(kernel, &bindings, Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP));
         Ok(())
     }
 }

@@ -176,17 +176,20 @@ impl Shadows {
     }
 
     /// Writes the passes that find what arrives at the sections in some light, as the set of this number in the frame. Where nothing casts and the
-    /// sky is dark, the passes before the last are left out.
+    /// sky is dark there is no pass. Returns whether there is.
     pub(crate) fn passes(
         &mut self,
         list: &mut PassList,
         set: usize,
         lights: &Lights,
         draws: &[SectionDraw],
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let uniform = ShadowUniform::new(&self.desc, lights, draws);
         self.memory.uniforms.upload(list, set, &[uniform]);
-        self.count(list, set, &uniform, draws)?;
+        if uniform.first == uniform.end {
+            return Ok(false);
+        }
+        self.count(list, set, draws)?;
         let Self { desc, kernels, memory } = self;
         if uniform.end > 1 {
             let rows = (uniform.end - 1) * desc.texels * desc.texels;
@@ -198,14 +201,12 @@ impl Shadows {
         for draw in draws {
             kernels.light(list, set, draw, memory)?;
         }
-        self.opaque(list, set, lights, draws)
+        self.opaque(list, set, lights, draws)?;
+        Ok(true)
     }
 
     /// Counts what hair takes in each cell.
-    fn count(&mut self, list: &mut PassList, set: usize, uniform: &ShadowUniform, draws: &[SectionDraw]) -> Result<()> {
-        if uniform.first == uniform.end {
-            return Ok(());
-        }
+    fn count(&mut self, list: &mut PassList, set: usize, draws: &[SectionDraw]) -> Result<()> {
         let Self { desc, kernels, memory } = self;
         list.clear(memory.bounds, 0, BOUNDS_BYTES);
         list.clear(memory.cells, 0, 4 * memory.cell_count);
