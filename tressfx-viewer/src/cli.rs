@@ -11,6 +11,7 @@ use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
 use crate::oit::Oit;
+use crate::shadows::Shadows;
 
 /// Hair and fur, simulated and rendered strand by strand on the GPU.
 #[derive(Debug, Parser)]
@@ -153,6 +154,8 @@ pub(crate) struct Render {
     pub(crate) camera: Camera,
     #[command(flatten)]
     pub(crate) oit: Oit,
+    #[command(flatten)]
+    pub(crate) shadows: Shadows,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,

@@ -20,6 +20,7 @@ mod reference;
 mod render;
 mod run;
 mod shaders;
+mod shadows;
 mod simulate;
 mod stats;
 mod studio;

@@ -70,6 +70,8 @@ pub(crate) struct RenderStats {
     pub(crate) peak_gpu_bytes: u64,
     /// Of those, the ones in which the technique of `--oit` keeps fragments and pixels.
     pub(crate) oit_bytes: u64,
+    /// Bytes in which shadows are made.
+    pub(crate) shadow_bytes: u64,
     /// Of the reference renderer, where it drew the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) reference: Option<ReferenceStats>,

@@ -53,9 +53,10 @@ impl Studio {
             sections.push((section, *run.params.material(index)));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
+        let desc = desc.shadows(args.shadows.desc());
         let mut renderer = HairRenderer::new(backend, &desc)?;
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
-        let scene = ScenePass::new(backend, TARGET, view.depth(), true)?;
+        let scene = ScenePass::new(backend, TARGET, view.depth(), desc.shadows.is_some())?;
         let (lights, drawn) = (studio_lights(), RenderStats::default());
         let light_depth = LightDepth::new(backend, &lights, &solids)?;
         backend.run(&uploads)?;
@@ -111,6 +112,7 @@ impl Studio {
         };
         let has_more_room = self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
         self.drawn.oit_bytes = self.renderer.technique_bytes();
+        self.drawn.shadow_bytes = self.renderer.shadow_bytes();
         Ok(has_more_room)
     }
 
