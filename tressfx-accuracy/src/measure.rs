@@ -88,7 +88,9 @@ impl Measure {
             return Ok(picture);
         }
         let part = folder.join("reference.part.png");
-        let more = ["--reference", "--samples", &self.setting.samples.to_string(), "--backend", backend];
+        // Techniques are judged by what they make of visibility: the colours are theirs.
+        let samples = self.setting.samples.to_string();
+        let more = ["--reference", "--reference-light", "given", "--samples", &samples, "--backend", backend];
         self.program.render(&[words, &more.map(str::to_owned)].concat(), &part)?;
         fs::rename(&part, &picture).with_context(|| picture.display().to_string())?;
         fs::write(&drawn_with, typed).with_context(|| drawn_with.display().to_string())?;

@@ -23,8 +23,9 @@ fn page(run: &Run, extent: Extent) -> String {
          Made by `cargo xtask accuracy{quick}`, which also makes [accuracy.json](accuracy.json): the same figures, with the time \
          of each pass.\n\
          `cargo xtask accuracy{quick} --check` measures again and fails where an error has grown by more than 10 %.\n\n\
-         Each picture is compared with that of the reference renderer (`tressfx render --reference`), which traces fibres as \
-         solids with {} rays a pixel, at {width}x{height}; frames simulated: {}. FLIP, PSNR and the largest difference (of 255) are of \
+         Each picture is compared with that of the reference renderer (`tressfx render --reference --reference-light given`), \
+         which traces fibres as solids with {} rays a pixel, in the colours that the methods draw with, at {width}x{height}; \
+         frames simulated: {}. FLIP, PSNR and the largest difference (of 255) are of \
          the whole picture, with its backdrop. A part of each error is the sampling of the reference, the same for all methods of \
          a scene.\n\n",
         run.setting.samples, run.setting.frames

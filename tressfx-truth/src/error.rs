@@ -42,6 +42,36 @@ pub enum TruthError {
         /// Pixels of the view.
         expected: usize,
     },
+    /// Not every section has its light.
+    #[error("the light of {found} sections for {expected}")]
+    Sections {
+        /// Sections with their light.
+        found: usize,
+        /// Sections of strands.
+        expected: usize,
+    },
+    /// A light has no direction, or no place.
+    #[error("light {0}: its direction is 0, or a number is not finite")]
+    Light(usize),
+    /// Radiance of the sky or of the ground that cannot be.
+    #[error("the light of the sky or of the ground is not finite, or negative")]
+    Sky,
+    /// A share is not from 0 to 1.
+    #[error("section {section}: {what} is not from 0 to 1")]
+    Share {
+        /// Which section.
+        section: usize,
+        /// Which share.
+        what: &'static str,
+    },
+    /// A mesh that has no triangles to it.
+    #[error("mesh {mesh}: {what}")]
+    Mesh {
+        /// Which mesh.
+        mesh: usize,
+        /// What is wrong with it, in words.
+        what: String,
+    },
     /// All sections together have 2^32 vertices or more.
     #[error("{0} vertices, there may be less than 2^32")]
     TooMany(u64),

@@ -1,6 +1,9 @@
 //! All strands of all sections in the space of the eye.
 
+use std::ops::Range;
+
 use glam::{DMat4, DVec3, DVec4};
+use tressfx_core::strand_buffers::StrandShape;
 
 use crate::cone::RoundCone;
 use crate::error::TruthError;
@@ -18,6 +21,21 @@ struct Vertex {
     radius: f64,
 }
 
+/// Where on a fibre a layer takes its colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) segment: u32,
+    /// 0 at the first vertex of the segment to 1 at the second.
+    pub(crate) t: f64,
+}
+
+/// The part of all strands that a section is.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub(crate) shape: StrandShape,
+    pub(crate) strands: Range<u32>,
+}
+
 /// Vertices strand by strand. Segment `i` goes from vertex `i` to vertex `i + 1`; the last vertex of a strand begins none.
 #[derive(Debug, Default)]
 pub(crate) struct Fibres {
@@ -25,6 +43,8 @@ pub(crate) struct Fibres {
     colors: Vec<[f32; 4]>,
     /// The strand of each vertex, counted through all sections.
     strands: Vec<u32>,
+    /// A section each, in their order.
+    parts: Vec<Part>,
 }
 
 impl Fibres {
@@ -41,16 +61,19 @@ impl Fibres {
         fibres.colors.reserve_exact(count as usize);
         fibres.strands.reserve_exact(count as usize);
         let mut first = 0;
-        for section in sections.iter().filter(|section| !section.positions.is_empty()) {
-            fibres.add(rays, section, first);
-            first += section.shape.strands();
+        for section in sections {
+            let count = if section.positions.is_empty() { 0 } else { section.shape.strands() };
+            let strands = first..first + count;
+            first = strands.end;
+            fibres.add(rays, section, strands.clone());
+            fibres.parts.push(Part { shape: section.shape, strands });
         }
         Ok(fibres)
     }
 
-    fn add(&mut self, rays: &Rays, section: &Section, first: u32) {
+    fn add(&mut self, rays: &Rays, section: &Section, strands: Range<u32>) {
         let pose: DMat4 = section.pose.matrix().as_dmat4();
-        for strand in 0..section.shape.strands() {
+        for strand in 0..strands.len() as u32 {
             for vertex in 0..section.shape.vertices {
                 let index = section.shape.index(strand, vertex) as usize;
                 let [x, y, z, _] = section.positions[index];
@@ -59,7 +82,7 @@ impl Fibres {
                 let point = rays.in_eye_space(pose.transform_point3(local));
                 self.vertices.push(Vertex { point, radius: section.radius(strand, vertex) });
                 self.colors.push(section.colors[index]);
-                self.strands.push(first + strand);
+                self.strands.push(strands.start + strand);
             }
         }
     }
@@ -83,10 +106,23 @@ impl Fibres {
         self.strands[segment as usize]
     }
 
-    /// Colour and opacity at a share `t` of a segment.
-    pub(crate) fn color(&self, segment: u32, t: f64) -> DVec4 {
-        let [a, b] = [0, 1].map(|end| DVec4::from_array(self.colors[segment as usize + end].map(f64::from)));
-        let color = a.lerp(b, t);
+    /// The sections, in their order.
+    pub(crate) fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The point of the axis at a place, and the radius there.
+    pub(crate) fn axis(&self, place: Place) -> (DVec3, f64) {
+        let i = place.segment as usize;
+        let (a, b) = (self.vertices[i], self.vertices[i + 1]);
+        (a.point.lerp(b.point, place.t), a.radius + (b.radius - a.radius) * place.t)
+    }
+
+    /// Colour and opacity at a place.
+    pub(crate) fn color(&self, place: Place) -> DVec4 {
+        let i = place.segment as usize;
+        let [a, b] = [i, i + 1].map(|vertex| DVec4::from_array(self.colors[vertex].map(f64::from)));
+        let color = a.lerp(b, place.t);
         color.truncate().extend(color.w.clamp(0.0, 1.0))
     }
 }

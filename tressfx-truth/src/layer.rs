@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 
 use crate::cone::RoundCone;
-use crate::fibres::Fibres;
+use crate::fibres::{Fibres, Place};
 use crate::rays::Ray;
 
 /// What a ray passes in one piece within one strand.
@@ -34,10 +34,12 @@ pub(crate) struct Blend {
 impl Blend {
     pub(crate) const EMPTY: Self = Self { color: DVec3::ZERO, transmittance: 1.0 };
 
-    /// Puts a layer behind all others.
-    pub(crate) fn add(&mut self, layer: &Layer) {
-        self.color += self.transmittance * layer.alpha * layer.color;
+    /// Puts a layer behind all others, and says how much of it is seen.
+    pub(crate) fn add(&mut self, layer: &Layer) -> f64 {
+        let weight = self.transmittance * layer.alpha;
+        self.color += weight * layer.color;
         self.transmittance *= 1.0 - layer.alpha;
+        weight
     }
 
     /// Whether nothing behind can be seen.
@@ -47,7 +49,11 @@ impl Blend {
 
     /// Premultiplied colour and alpha.
     pub(crate) fn color(&self) -> DVec4 {
-        self.color.extend(1.0 - self.transmittance)
+        self.color.extend(self.alpha())
+    }
+
+    pub(crate) fn alpha(&self) -> f64 {
+        1.0 - self.transmittance
     }
 }
 
@@ -58,9 +64,7 @@ struct Hit {
     exit: f64,
     /// How deep the entry is in the segment: below 0 only where the ray begins inside.
     power: f64,
-    /// Where on the segment.
-    t: f64,
-    segment: u32,
+    place: Place,
     strand: u32,
 }
 
@@ -94,16 +98,17 @@ impl Hits {
         let enter = part.enter.max(range.near);
         let (t, power) = cone.deepest(ray.at(enter));
         let power = if enter > part.enter { power } else { 0.0 };
-        self.waiting.push(Hit { enter, exit: part.exit, power, t, segment, strand: fibres.strand(segment) });
+        let place = Place { segment, t };
+        self.waiting.push(Hit { enter, exit: part.exit, power, place, strand: fibres.strand(segment) });
     }
 
     /// Hands out the layers that begin nearer than `horizon`, nearest first. Hits before it must all have been taken.
-    pub(crate) fn settle(&mut self, horizon: f64, fibres: &Fibres, sink: &mut impl FnMut(&Layer)) {
+    pub(crate) fn settle(&mut self, horizon: f64, fibres: &Fibres, sink: &mut impl FnMut(&Layer, Place)) {
         if self.waiting.is_empty() {
             return;
         }
         let order = |a: &Hit, b: &Hit| {
-            a.enter.total_cmp(&b.enter).then(a.power.total_cmp(&b.power)).then(a.segment.cmp(&b.segment))
+            a.enter.total_cmp(&b.enter).then(a.power.total_cmp(&b.power)).then(a.place.segment.cmp(&b.place.segment))
         };
         self.waiting.sort_unstable_by(order);
         let settled = self.waiting.partition_point(|hit| hit.enter < horizon);
@@ -117,8 +122,9 @@ impl Hits {
                 Some((_, exit)) => *exit = hit.exit,
                 None => self.inside.push((hit.strand, hit.exit)),
             }
-            let color = fibres.color(hit.segment, hit.t);
-            sink(&Layer { distance: hit.enter, color: color.truncate(), alpha: color.w, strand: hit.strand });
+            let color = fibres.color(hit.place);
+            let layer = Layer { distance: hit.enter, color: color.truncate(), alpha: color.w, strand: hit.strand };
+            sink(&layer, hit.place);
         }
     }
 }

@@ -1,9 +1,12 @@
 //! Where in a pixel its rays go through.
 
-use glam::{DVec2, UVec2};
+use glam::{DVec2, DVec3, UVec2};
 
 /// The root of x^3 = x + 1, which Roberts' two-dimensional sequence is made from.
 const PLASTIC: f64 = 1.324_717_957_244_746;
+
+/// The root of x^4 = x + 1, which the three-dimensional one is made from.
+const FOURTH: f64 = 1.220_744_084_605_759_6;
 
 /// The first `count` sample points of a pixel, in pixels from the upper left corner of the picture: an R2 sequence, shifted
 /// by a hash of the pixel. They are the same in every run, and the first of more points are the same as fewer.
@@ -19,12 +22,30 @@ pub(crate) fn points(pixel: [u32; 2], numbers: std::ops::Range<u32>) -> impl Ite
     numbers.map(move |i| corner + (shift + step * f64::from(i)).fract())
 }
 
+/// Three numbers in [0, 1) for each ray of a range: what is left to chance along it. They are an R3 sequence, shifted as the
+/// points are, by another hash. Each alone is spread most evenly in the first, and least in the second.
+pub(crate) fn chances(pixel: [u32; 2], numbers: std::ops::Range<u32>) -> impl Iterator<Item = DVec3> {
+    let step = DVec3::new(1.0 / FOURTH, 1.0 / FOURTH.powi(2), 1.0 / FOURTH.powi(3));
+    let (first, second) = (mix(word(pixel)), mix(mix(word(pixel))));
+    let shift = DVec3::new(unit(first), unit(first >> 32), unit(second));
+    numbers.map(move |i| (shift + step * f64::from(i)).fract())
+}
+
 /// Two numbers in [0, 1) that look random.
 fn shift(pixel: [u32; 2]) -> DVec2 {
-    let key = (u64::from(pixel[1]) << 32) | u64::from(pixel[0]);
-    let word = mix(mix(key ^ 0x9e37_79b9_7f4a_7c15));
-    let unit = |bits: u64| (bits & 0xffff_ffff) as f64 / 4_294_967_296.0;
+    let word = word(pixel);
     DVec2::new(unit(word), unit(word >> 32))
+}
+
+/// A hash of a pixel.
+fn word(pixel: [u32; 2]) -> u64 {
+    let key = (u64::from(pixel[1]) << 32) | u64::from(pixel[0]);
+    mix(mix(key ^ 0x9e37_79b9_7f4a_7c15))
+}
+
+/// The lower half of a word as a number in [0, 1).
+fn unit(bits: u64) -> f64 {
+    (bits & 0xffff_ffff) as f64 / 4_294_967_296.0
 }
 
 /// The finalizer of SplitMix64 (Stafford's variant 13).

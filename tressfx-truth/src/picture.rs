@@ -20,6 +20,7 @@ pub struct Picture {
     pub(crate) size: [u32; 2],
     pub(crate) pixels: Vec<DVec4>,
     pub(crate) error: Option<SamplingError>,
+    pub(crate) shadow_rays: u64,
 }
 
 impl Picture {
@@ -36,6 +37,11 @@ impl Picture {
     /// The error of sampling; none of a single sample.
     pub fn error(&self) -> Option<SamplingError> {
         self.error
+    }
+
+    /// How many rays went towards light.
+    pub fn shadow_rays(&self) -> u64 {
+        self.shadow_rays
     }
 
     /// The picture over a scene: linear RGB, row by row from the top. Pixels beyond the shorter of both are left out.

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3, Vec2};
 use tressfx_core::view::{Lens, View};
 
 /// A ray in the space of the eye: x right, y up, z the distance from the plane of the eye. The point at the parameter `s` is
-/// `origin + s * direction`, and `s` is its z.
+/// `origin + s * direction`; on a ray through the picture `s` is its z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray {
     pub(crate) origin: DVec3,
@@ -46,6 +46,11 @@ impl Rays {
     /// A point of the world in the space of the eye.
     pub(crate) fn in_eye_space(&self, point: DVec3) -> DVec3 {
         self.to_eye.transform_point3(point)
+    }
+
+    /// A direction of the world in the space of the eye, as long as it was.
+    pub(crate) fn turned(&self, direction: DVec3) -> DVec3 {
+        self.to_eye.transform_vector3(direction)
     }
 
     /// The ray through a point of the picture, in pixels from the upper left corner.

@@ -1,13 +1,15 @@
 //! One tile of the picture: its segments front to back, over all rays of its pixels.
 
-use glam::{DVec2, DVec4, UVec2};
+use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use crate::bound::Bound;
 use crate::fibres::Fibres;
 use crate::layer::{Blend, Hits, Range};
-use crate::pattern::points;
+use crate::lit::{Lit, Pick};
+use crate::pattern::{chances, points};
 use crate::picture::{Errors, Halves, Sum};
 use crate::rays::{Ray, Rays};
+use crate::shadow::ShadowWork;
 
 /// Rays of a pixel that are followed at the same time, which bounds memory whatever the number of samples is.
 const AT_ONCE: u32 = 64;
@@ -21,6 +23,7 @@ pub(crate) struct Workspace {
     order: Vec<(f64, u32)>,
     samples: Vec<Sample>,
     pixels: Vec<Pixel>,
+    shadow: ShadowWork,
 }
 
 /// A ray and what it has met.
@@ -30,6 +33,9 @@ struct Sample {
     ray: Ray,
     hits: Hits,
     blend: Blend,
+    pick: Pick,
+    /// What else is left to chance.
+    sky: DVec2,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +52,7 @@ pub(crate) struct TilePicture {
     /// Premultiplied; empty where there is no hair.
     pub(crate) pixels: Vec<DVec4>,
     pub(crate) errors: Errors,
+    pub(crate) shadow_rays: u64,
 }
 
 /// What all tiles share.
@@ -54,6 +61,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) rays: &'a Rays,
     pub(crate) fibres: &'a Fibres,
     pub(crate) halves: Halves,
+    /// None where the colours are those that were given.
+    pub(crate) light: Option<&'a Lit>,
 }
 
 impl Scene<'_> {
@@ -72,7 +81,7 @@ impl Scene<'_> {
             work.follow(self);
             for (sum, samples) in sums.iter_mut().zip(work.samples.chunks(each)) {
                 for (number, sample) in (first..).zip(samples) {
-                    self.halves.add(sum, number, sample.blend.color());
+                    self.halves.add(sum, number, self.color(&mut work.shadow, sample));
                 }
             }
         }
@@ -80,7 +89,15 @@ impl Scene<'_> {
         if self.halves.tell_error() {
             sums.iter().for_each(|sum| errors.add(self.halves.error(sum)));
         }
-        TilePicture { pixels: sums.iter().map(|sum| self.halves.mean(sum)).collect(), errors }
+        let shadow_rays = std::mem::take(&mut work.shadow.rays);
+        TilePicture { pixels: sums.iter().map(|sum| self.halves.mean(sum)).collect(), errors, shadow_rays }
+    }
+
+    /// Premultiplied colour and alpha of a ray that has met all that is seen on it.
+    fn color(&self, shadow: &mut ShadowWork, sample: &Sample) -> DVec4 {
+        let (Some(light), Some(place)) = (self.light, sample.pick.place) else { return sample.blend.color() };
+        let alpha = sample.blend.alpha();
+        (alpha * light.color(shadow, self.fibres, place, sample.sky)).extend(alpha)
     }
 }
 
@@ -103,12 +120,20 @@ impl Workspace {
             range: Range { near: rays.near, far },
             open: each as u32,
         }));
-        let empty =
-            Sample { at: DVec2::ZERO, ray: rays.through(DVec2::ZERO), hits: Hits::default(), blend: Blend::EMPTY };
+        let empty = Sample {
+            at: DVec2::ZERO,
+            ray: rays.through(DVec2::ZERO),
+            hits: Hits::default(),
+            blend: Blend::EMPTY,
+            pick: Pick::new(0.0),
+            sky: DVec2::ZERO,
+        };
         self.samples.resize(each * pixels.len(), empty);
         for ((pixel, _), samples) in pixels.iter().zip(self.samples.chunks_mut(each)) {
-            for (sample, at) in samples.iter_mut().zip(points(*pixel, numbers.clone())) {
+            let chosen = points(*pixel, numbers.clone()).zip(chances(*pixel, numbers.clone()));
+            for (sample, (at, DVec3 { x, y, z })) in samples.iter_mut().zip(chosen) {
                 (sample.at, sample.ray, sample.blend) = (at, rays.through(at), Blend::EMPTY);
+                (sample.sky, sample.pick) = (DVec2::new(x, y), Pick::new(z));
                 sample.hits.clear();
             }
         }
@@ -139,10 +164,10 @@ impl Workspace {
                 continue;
             }
             for sample in samples.iter_mut().filter(|sample| !sample.blend.is_closed()) {
-                let blend = &mut sample.blend;
-                sample.hits.settle(horizon, scene.fibres, &mut |layer| {
+                let Sample { blend, pick, .. } = sample;
+                sample.hits.settle(horizon, scene.fibres, &mut |layer, place| {
                     if !blend.is_closed() {
-                        blend.add(layer);
+                        pick.offer(blend.add(layer), place);
                     }
                 });
                 pixel.open -= u32::from(blend.is_closed());

@@ -10,6 +10,8 @@ use tressfx_core::view::View;
 use crate::error::TruthError;
 use crate::fibres::Fibres;
 use crate::layer::{Hits, Layer, Range};
+use crate::light::Illumination;
+use crate::lit::Lit;
 use crate::picture::{Errors, Halves, Picture};
 use crate::rays::Rays;
 use crate::section::Section;
@@ -34,6 +36,7 @@ pub struct Truth {
     fibres: Fibres,
     /// Distance of the opaque scene at each pixel; empty where there is none.
     scene: Vec<f64>,
+    light: Option<Lit>,
 }
 
 impl Truth {
@@ -50,17 +53,28 @@ impl Truth {
             return Err(TruthError::Depth { found, expected: pixels });
         }
         let scene = depth.unwrap_or_default().iter().map(|&depth| rays.distance(depth)).collect();
-        Ok(Self { size, rays, fibres: Fibres::new(&rays, sections)?, scene })
+        Ok(Self { size, rays, fibres: Fibres::new(&rays, sections)?, scene, light: None })
+    }
+
+    /// The same strands in light: what is drawn is no longer the colours of the sections, but what these lights make of theirs,
+    /// shaded by all strands and meshes. The opacity stays.
+    ///
+    /// # Errors
+    /// [`TruthError`]: arrays of another length than the counts say, shares that are not from 0 to 1, indices of vertices that
+    /// a mesh does not have, numbers that are not finite.
+    pub fn lit_by(mut self, light: &Illumination) -> Result<Self, TruthError> {
+        self.light = Some(Lit::new(&self.rays, &self.fibres, light)?);
+        Ok(self)
     }
 
     /// The picture, from the mean of `samples` rays a pixel. `progress` is called from many threads.
     pub fn render(&self, samples: NonZeroU32, progress: &(dyn Fn(Progress) + Sync)) -> Picture {
         let halves = Halves::new(samples.get());
-        let scene = Scene { rays: &self.rays, fibres: &self.fibres, halves };
+        let scene = Scene { rays: &self.rays, fibres: &self.fibres, halves, light: self.light.as_ref() };
         let tiling = Tiling::new(self.size);
         let counts = tiling.counts(&self.rays, &self.fibres);
         let mut pixels = vec![DVec4::ZERO; self.size[0] as usize * self.size[1] as usize];
-        let mut errors = Errors::default();
+        let (mut errors, mut shadow_rays) = (Errors::default(), 0);
         let done = AtomicU64::new(0);
         for run in runs(&counts) {
             let lists = Lists::new(&tiling, &self.rays, &self.fibres, &counts, run);
@@ -73,13 +87,14 @@ impl Truth {
             });
             for (tile, picture) in tiles.collect::<Vec<(u32, TilePicture)>>() {
                 errors = errors.with(picture.errors);
+                shadow_rays += picture.shadow_rays;
                 for (pixel, color) in tiling.pixels(tile).zip(picture.pixels) {
                     pixels[self.index(pixel)] = color;
                 }
             }
         }
         let error = halves.tell_error().then(|| errors.summary(pixels.len()));
-        Picture { size: self.size, pixels, error }
+        Picture { size: self.size, pixels, error, shadow_rays }
     }
 
     /// All layers along the ray through a point of the picture, nearest first, however much is seen of them. The point is in
@@ -98,7 +113,7 @@ impl Truth {
                 hits.take(&ray, range, &self.fibres, segment, &cone);
             }
         }
-        hits.settle(f64::INFINITY, &self.fibres, &mut |layer| layers.push(*layer));
+        hits.settle(f64::INFINITY, &self.fibres, &mut |layer, _| layers.push(*layer));
         layers
     }
 

@@ -174,6 +174,9 @@ pub(crate) struct Render {
     /// Rays a pixel of the reference renderer
     #[arg(long, default_value = "64", value_name = "N", requires = "reference")]
     pub(crate) samples: NonZeroU32,
+    /// Where the reference renderer has its colours from
+    #[arg(long, value_enum, default_value_t = ReferenceLight::Traced, requires = "reference")]
+    pub(crate) reference_light: ReferenceLight,
 }
 
 #[derive(Debug, Args)]
@@ -264,6 +267,14 @@ pub(crate) enum Motion {
     Turn,
     /// It goes along with steps
     Walk,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReferenceLight {
+    /// The colours that the techniques draw with: what differs from theirs is visibility alone
+    Given,
+    /// Rays towards each light and the sky, through the strands and past the meshes
+    Traced,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -39,7 +39,7 @@ impl LightDepth {
     ///
     /// # Errors
     /// What the backend says.
-    pub fn new(backend: &mut dyn Backend, lights: &Lights, meshes: &[&Mesh]) -> Result<Self> {
+    pub fn new(backend: &mut dyn Backend, lights: &Lights, meshes: &[Mesh]) -> Result<Self> {
         let root = ("scene_depth", include_str!("../shaders/scene_depth.wgsl"));
         let source = ShaderSource { label: LABEL, root, library: &[VIEW_MODULE] };
         let shader = Shader::new(&source, &Specialization::new())?.into();

@@ -17,6 +17,7 @@ mod params;
 mod passes;
 mod picture;
 mod reference;
+mod reference_light;
 mod render;
 mod run;
 mod shaders;

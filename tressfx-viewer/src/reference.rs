@@ -1,8 +1,9 @@
 //! The picture of the reference renderer: `tressfx render --reference`.
 //!
-//! What it is given is what the techniques on the GPU are given, read back: positions, the colours that `hair.render.shade`
-//! wrote, and the opaque scene with its depth. So the difference of the two pictures is what the technique makes of the
-//! visibility of strands, and nothing else.
+//! What it is given is what the techniques on the GPU are given, read back: positions, colours, and the opaque scene with its
+//! depth. With `--reference-light given` these are the colours that a frame is drawn with: the difference of the two pictures is
+//! what the technique makes of the visibility of strands, and nothing else. Else they are those in each light alone, and how
+//! much of it arrives is traced.
 
 use std::time::Instant;
 
@@ -12,10 +13,11 @@ use image::RgbImage;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_render::SectionDraw;
-use tressfx_truth::{Picture, Section, Truth};
+use tressfx_truth::{Section, Truth};
 
-use crate::cli::Render;
+use crate::cli::{ReferenceLight, Render};
 use crate::picture::{developed, texels};
+use crate::reference_light::Unshaded;
 use crate::run::{Progress, Run};
 use crate::stats::ReferenceStats;
 use crate::studio::Studio;
@@ -45,18 +47,31 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
     let scene: Vec<DVec3> = texels(&run.fetch(tickets.color)?).map(|texel| texel.as_dvec4().truncate()).collect();
     let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&run.fetch(tickets.depth)?);
     let strands = strands(run, &tickets)?;
+    let light = match args.reference_light {
+        ReferenceLight::Given => None,
+        ReferenceLight::Traced => Some(Unshaded::new(run, studio)?),
+    };
     let begun = Instant::now();
-    let picture = trace(run, studio, args, &strands, &depth)?;
+    let truth = truth(run, studio, &strands, &depth)?;
+    let truth = match &light {
+        None => truth,
+        Some(light) => light.on(truth, studio, run.head(&args.scene))?,
+    };
+    let bar = Progress::new(0, "tile");
+    let picture = truth.render(args.samples, &|progress| bar.advance_of(progress.tiles));
+    drop(bar);
     let error = picture.error().map_or_else(String::new, |error| {
         format!("; error of sampling, estimated: {:.5} RMS, {:.3} at most", error.rms, error.max)
     });
     let stats = ReferenceStats {
         samples: args.samples.get(),
+        shadow_rays: picture.shadow_rays(),
         seconds: begun.elapsed().as_secs_f64(),
         rms_error: picture.error().map(|error| error.rms),
         max_error: picture.error().map(|error| error.max),
     };
-    println!("reference: {} samples a pixel, {:.1} s{error}", stats.samples, stats.seconds);
+    let ReferenceStats { samples, shadow_rays, seconds, .. } = stats;
+    println!("reference: {samples} samples a pixel, {shadow_rays} rays towards light, {seconds:.1} s{error}");
     studio.drawn.reference = Some(stats);
     Ok(developed(picture.over(&scene).into_iter().map(|pixel| pixel.as_vec3()), args.size))
 }
@@ -67,10 +82,16 @@ fn requests(list: &mut PassList, run: &Run, studio: &mut Studio, args: &Render) 
     let (color, depth) = (list.read_texture(studio.targets.color), list.read_texture(studio.targets.depth));
     let counters = studio.draw_hair(list, run.sim.pose(), &lights)?;
     let positions = run.sim.read_positions(list);
-    let colors = studio.sections.iter().zip(run.sim.buffers()).map(|((strands, _), buffers)| {
-        list.read_buffer(strands.colors(), 0, 8 * u64::from(buffers.shape.strand_vertices()))
-    });
-    Ok(Tickets { color, depth, counters, positions, colors: colors.collect() })
+    Ok(Tickets { color, depth, counters, positions, colors: request_colors(list, run, studio) })
+}
+
+/// Reads back the colours of all sections, as the list has just made them.
+pub(crate) fn request_colors(list: &mut PassList, run: &Run, studio: &Studio) -> Vec<Ticket> {
+    let sections = studio.sections.iter().zip(run.sim.buffers());
+    let bytes = |vertices: u32| 8 * u64::from(vertices);
+    sections
+        .map(|((strands, _), buffers)| list.read_buffer(strands.colors(), 0, bytes(buffers.shape.strand_vertices())))
+        .collect()
 }
 
 fn strands(run: &mut Run, tickets: &Tickets) -> Result<Vec<Strands>> {
@@ -85,7 +106,7 @@ fn strands(run: &mut Run, tickets: &Tickets) -> Result<Vec<Strands>> {
     Ok(sections)
 }
 
-fn trace(run: &Run, studio: &Studio, args: &Render, strands: &[Strands], depth: &[f32]) -> Result<Picture> {
+fn truth(run: &Run, studio: &Studio, strands: &[Strands], depth: &[f32]) -> Result<Truth> {
     let pose = run.sim.pose();
     let sections = run.groom.sections.iter().zip(&studio.sections).zip(strands);
     let sections: Vec<_> = sections
@@ -102,7 +123,5 @@ fn trace(run: &Run, studio: &Studio, args: &Render, strands: &[Strands], depth: 
             }
         })
         .collect();
-    let truth = Truth::new(&studio.view, &sections, Some(depth))?;
-    let bar = Progress::new(0, "tile");
-    Ok(truth.render(args.samples, &|progress| bar.advance_of(progress.tiles)))
+    Ok(Truth::new(&studio.view, &sections, Some(depth))?)
 }

@@ -82,6 +82,8 @@ pub(crate) struct RenderStats {
 pub(crate) struct ReferenceStats {
     /// A pixel.
     pub(crate) samples: u32,
+    /// Rays towards light, of the whole picture.
+    pub(crate) shadow_rays: u64,
     pub(crate) seconds: f64,
     /// Estimates of the error of sampling in linear light, over all pixels; none of a single sample.
     pub(crate) rms_error: Option<f64>,

@@ -25,10 +25,12 @@ pub(crate) struct Studio {
     /// What the newest frame drew.
     pub(crate) drawn: RenderStats,
     pub(crate) view: View,
-    lights: Lights,
+    pub(crate) lights: Lights,
     light_depth: LightDepth,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
+    /// The same meshes on the CPU.
+    pub(crate) opaque: Vec<Mesh>,
     pub(crate) sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
 }
@@ -44,9 +46,8 @@ impl Studio {
             targets = targets.hair(texture("hair", HAIR_FORMAT)?);
         }
         let mut uploads = PassList::new();
-        let solids: Vec<&Mesh> = mesh.iter().chain(&run.groom.mesh).collect();
-        let made = solids.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh));
-        let meshes = made.collect::<Result<_, _>>()?;
+        let opaque: Vec<Mesh> = mesh.into_iter().chain(run.groom.mesh.clone()).collect();
+        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
@@ -58,9 +59,9 @@ impl Studio {
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth(), desc.shadows.is_some())?;
         let (lights, drawn) = (studio_lights(), RenderStats::default());
-        let light_depth = LightDepth::new(backend, &lights, &solids)?;
+        let light_depth = LightDepth::new(backend, &lights, &opaque)?;
         backend.run(&uploads)?;
-        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, sections, renderer })
+        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer })
     }
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
@@ -91,6 +92,16 @@ impl Studio {
         let view = ViewDraw::new(view, lights, *targets);
         renderer.draw(list, &[view], &draws(&self.sections, pose))?;
         Ok(self.renderer.request_counters(list, 0))
+    }
+
+    /// Records the hair once more, for its colours in other light that nothing shades.
+    pub(crate) fn draw_unshaded(&mut self, list: &mut PassList, lights: &Lights, pose: Pose) -> Result<()> {
+        let materials = self.sections.iter().map(|(_, material)| material.with(|material| material.self_shadow = 0.0));
+        let materials: Vec<Material> = materials.collect();
+        let sections = self.sections.iter().zip(&materials);
+        let draws: Vec<_> =
+            sections.map(|((strands, _), material)| SectionDraw::new(strands, material, pose)).collect();
+        Ok(self.renderer.draw(list, &[ViewDraw::new(&self.view, lights, self.targets)], &draws)?)
     }
 
     /// Reads the counters of the frame that was just drawn and makes room where there was too little. Says whether the

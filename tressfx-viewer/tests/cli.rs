@@ -275,11 +275,12 @@ fn without_frames_the_rest_pose_is_drawn_and_written() {
 fn the_reference_draws_the_same_frame() {
     let folder = folder("reference");
     render(&folder, &["--out", "a.png"]);
-    let said = render(&folder, &["--out", "b.png", "--reference", "--samples", "16", "--stats", "b.json"]);
+    let reference = ["--reference", "--samples", "16", "--reference-light", "given"];
+    let said = render(&folder, &[&["--out", "b.png", "--stats", "b.json"], &reference[..]].concat());
     assert!(said.contains("16 samples a pixel") && said.contains("RMS"), "{said}");
     let stats: Value = serde_json::from_slice(&std::fs::read(folder.join("b.json")).unwrap()).unwrap();
     let figures = &stats["render"]["reference"];
-    assert_eq!(figures["samples"], 16);
+    assert_eq!((&figures["samples"], &figures["shadow_rays"]), (&16.into(), &0.into()));
     assert!(figures["rms_error"].as_f64().unwrap() < 0.02, "{figures}");
     let compared: Value = serde_json::from_str(&passes(&folder, &["compare", "a.png", "b.png", "--json"])).unwrap();
     assert!(compared["psnr_db"].as_f64().unwrap() > 35.0, "the same hair: {compared}");
@@ -288,7 +289,37 @@ fn the_reference_draws_the_same_frame() {
     let refused = |extra: &[&str]| fails(&folder, &[&["render"], &SMALL[..], extra].concat()).0;
     assert!(refused(&["--out", "c.gif", "--reference"]).contains(".png of the last frame"));
     assert!(refused(&["--out", "c.png", "--samples", "4"]).contains("--reference"));
+    assert!(refused(&["--out", "c.png", "--reference-light", "given"]).contains("--reference"));
     assert!(refused(&["--out", "c.png", "--reference", "--samples", "0"]).contains("--samples"));
+}
+
+#[test]
+fn the_reference_traces_light() {
+    let folder = folder("reference_light");
+    let bright = |name: &str| {
+        let picture = image::open(folder.join(name)).unwrap().into_rgb8();
+        picture.pixels().map(|pixel| f64::from(pixel.0[1])).sum::<f64>()
+    };
+    let shadow_rays = |name: &str, extra: &[&str]| {
+        let out = [&format!("{name}.png"), "--stats", &format!("{name}.json")];
+        let small =
+            ["render", "builtin:curly:300:24", "--frames", "0", "--size", "160x90", "--reference", "--samples", "16"];
+        passes(&folder, &[&small[..], &["--out"], &out, extra].concat());
+        let stats: Value = serde_json::from_slice(&std::fs::read(folder.join(out[2])).unwrap()).unwrap();
+        stats["render"]["reference"]["shadow_rays"].as_u64().unwrap()
+    };
+    std::fs::write(folder.join("open.toml"), "[material]\nself_shadow = 0.0\n").unwrap();
+    let open = ["--params", "open.toml"];
+    assert_eq!(shadow_rays("given", &[&open[..], &["--reference-light", "given"]].concat()), 0);
+    assert_eq!(shadow_rays("open", &open), 0, "no shadow is seen, none is traced");
+    assert!(shadow_rays("traced", &[]) > 1000);
+    // The sky apart, of which the shader takes what is in one direction, the colours are the same.
+    let compared: Value =
+        serde_json::from_str(&passes(&folder, &["compare", "given.png", "open.png", "--json"])).unwrap();
+    assert!(compared["psnr_db"].as_f64().unwrap() > 35.0, "{compared}");
+    assert!(bright("traced.png") < bright("open.png"), "hair shades hair");
+    assert_eq!(shadow_rays("again", &[]), shadow_rays("traced", &[]));
+    assert_eq!(bright("again.png"), bright("traced.png"));
 }
 
 #[test]

@@ -3,6 +3,8 @@
 
 use std::num::NonZeroU32;
 
+pub(crate) mod light;
+
 use glam::camera::rh;
 use glam::{DVec4, Mat4, Vec3};
 use tressfx_core::backend::DepthOrder;
