@@ -47,9 +47,9 @@ pub struct ShadowDesc {
 }
 
 impl Default for ShadowDesc {
-    /// Three lights with 256 x 256 x 64 cells, 50 MB, and 48 cells along the longest side of the groom.
+    /// Three lights with 192 x 192 x 48 cells, 21 MB, and 32 cells along the longest side of the groom.
     fn default() -> Self {
-        Self { texels: 256, layers: 64, cells: 48, lights: 3, samples: 32_768 }
+        Self { texels: 192, layers: 48, cells: 32, lights: 3, samples: 32_768 }
     }
 }
 

@@ -8,13 +8,13 @@ pub(crate) struct Shadows {
     /// Light every strand as if it were alone
     #[arg(long)]
     no_shadows: bool,
-    /// Cells across what a light sees, each way; 256 by default
+    /// Cells across what a light sees, each way; 192 by default
     #[arg(long, value_name = "N", conflicts_with = "no_shadows")]
     shadow_texels: Option<u32>,
-    /// Cells along the way of a light; 64 by default
+    /// Cells along the way of a light; 48 by default
     #[arg(long, value_name = "N", conflicts_with = "no_shadows")]
     shadow_layers: Option<u32>,
-    /// Cells of the sky along the longest side of the groom; 48 by default
+    /// Cells of the sky along the longest side of the groom; 32 by default
     #[arg(long, value_name = "N", conflicts_with = "no_shadows")]
     shadow_cells: Option<u32>,
     /// Lights that have cells of their own; 3 by default. Others are taken from what arrives from everywhere
