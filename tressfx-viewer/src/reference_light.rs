@@ -25,7 +25,7 @@ impl Unshaded {
     pub(crate) fn new(run: &mut Run, studio: &mut Studio) -> Result<Self> {
         let mut lights = vec![Vec::new(); studio.sections.len()];
         for light in studio.lights.lights.clone() {
-            let alone = Lights { lights: vec![light], ..Lights::default() };
+            let alone = Lights { lights: vec![light.casts(false)], ..Lights::default() };
             let colors = colors(run, studio, &alone)?;
             lights.iter_mut().zip(colors).for_each(|(section, colors)| section.push(colors));
         }
@@ -36,7 +36,7 @@ impl Unshaded {
     /// The strands in the light of the studio, with the meshes on the head that is at `head`.
     pub(crate) fn on(&self, truth: Truth, studio: &Studio, head: Pose) -> Result<Truth> {
         let Lights { sky, ground, lights } = &studio.lights;
-        let sources: Vec<Light> = lights.iter().map(|light| source(&light.place)).collect();
+        let sources: Vec<Light> = lights.iter().map(source).collect();
         let colors = self.lights.iter().zip(&self.sky).zip(&studio.sections);
         let sections: Vec<_> = colors
             .map(|((lights, sky), (_, material))| LitSection {
@@ -64,9 +64,10 @@ fn colors(run: &mut Run, studio: &mut Studio, lights: &Lights) -> Result<Vec<Vec
     tickets.into_iter().map(section).collect()
 }
 
-/// From where a light comes.
-fn source(place: &LightPlace) -> Light {
-    match *place {
+/// From where a light comes, for its shadows.
+fn source(light: &tressfx_render::Light) -> Light {
+    match light.place {
+        _ if !light.casts => Light::Shadowless,
         LightPlace::Directional { towards } => Light::Directional { towards },
         LightPlace::Point { position, .. } => Light::Point { position },
     }
