@@ -11,7 +11,7 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{HairRenderer, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw};
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, StepInput};
-use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
+use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 const SIZE: [u32; 2] = [640, 640];
 const FORMAT: Format = Format::Rgba8Srgb;
@@ -49,7 +49,8 @@ fn main() -> Result<()> {
     renderer.grow_to_predicted(&mut gpu, &view, &draws)?;
     renderer.cast(&mut list, &lights, &draws)?;
     let shadows = renderer.shadow_bindings();
-    scene.draw(&mut list, &view, &lights, &targets, &Backdrop::default(), &[head], &shadows)?;
+    let opaque = Scene { backdrop: Backdrop::default(), meshes: &[head], shadows: &shadows };
+    scene.draw(&mut list, &view, &lights, &targets, &opaque)?;
     renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws)?;
     let picture = list.read_texture(targets.color);
 

@@ -100,8 +100,8 @@ fn a_turn_is_covered_once() {
 fn colours_are_those_of_the_surface() {
     let Some(mut screen) = screen(tiles) else { return };
     let look = opaque(&screen, 6.0).with(|m| {
-        m.base_color = Vec3::new(0.8, 0.1, 0.1);
-        m.tip_color = Vec3::new(0.1, 0.1, 0.8);
+        m.base_color = Vec3::new(0.6, 0.08, 0.08);
+        m.tip_color = Vec3::new(0.08, 0.08, 0.6);
     });
     for slope in [-3.0, -1.0, 1.0, 3.0] {
         let strand = (0..4).map(|i| (i as f32 - 1.5) * 0.12 * Vec3::new(1.0, 0.3, slope)).collect();

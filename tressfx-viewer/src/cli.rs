@@ -26,7 +26,7 @@ pub(crate) enum Command {
     /// Say what is in groom files
     Info(Info),
     /// Simulate a groom and render it
-    Render(Render),
+    Render(Box<Render>),
     /// Simulate a groom and write its pose as a 4.x .tfx file
     Simulate(Simulate),
     /// Convert a groom file; the ending of OUT chooses the format (.tfx: 4.x binary, .txt: 2013 text)

@@ -104,6 +104,17 @@ pub struct MeshDraw<'a> {
     pub pose: Pose,
 }
 
+/// What is opaque in a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// What is behind everything.
+    pub backdrop: Backdrop,
+    /// What stands before it.
+    pub meshes: &'a [MeshDraw<'a>],
+    /// `HairRenderer::shadow_bindings` where the pass was made with shadows, else nothing.
+    pub shadows: &'a [(&'static str, Binding)],
+}
+
 /// Draws what is not hair, so that hair has something to grow on and to hide behind.
 #[derive(Debug)]
 pub struct ScenePass {
@@ -132,8 +143,7 @@ impl ScenePass {
         })
     }
 
-    /// Clears the targets and draws meshes before the backdrop. `shadows` is `HairRenderer::shadow_bindings` where the pass was made with
-    /// shadows, else nothing.
+    /// Clears the targets and draws meshes before the backdrop.
     ///
     /// # Errors
     /// Shadows that are missing, or that nobody asked for.
@@ -146,20 +156,19 @@ impl ScenePass {
         view: &View,
         lights: &Lights,
         targets: &Targets,
-        backdrop: &Backdrop,
-        meshes: &[MeshDraw],
-        shadows: &[(&'static str, Binding)],
+        scene: &Scene,
     ) -> Result<()> {
+        let Scene { backdrop, meshes, shadows } = scene;
         assert_eq!(view.depth(), self.order, "the order of depth of the view and of the scene pass");
         list.upload(self.view, 0, &[ViewUniform::new(view, lights)]);
         list.upload(self.gradient, 0, &[backdrop.uniform(view)]);
-        for draw in meshes {
+        for draw in *meshes {
             list.upload(draw.mesh.uniform, 0, &[draw.uniform()]);
         }
         let mut pass = RasterPass::new(LABEL)
             .color(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))
             .depth(targets.depth, Load::Clear(self.order.far()));
-        for draw in meshes {
+        for draw in *meshes {
             pass = pass.draw(self.mesh(draw.mesh, shadows)?);
         }
         let gradient = self.backdrop.bind(&[("gradient", self.gradient.into())])?;

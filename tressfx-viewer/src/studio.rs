@@ -10,7 +10,7 @@ use tressfx_render::{
     Technique, ViewDraw,
 };
 use tressfx_viewer::light_depth::LightDepth;
-use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
+use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
 use crate::run::Run;
@@ -78,7 +78,8 @@ impl Studio {
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
         let shadows = self.renderer.shadow_bindings();
         let Self { view, targets, scene, .. } = self;
-        scene.draw(list, view, &lights, targets, &Backdrop::default(), &meshes, &shadows)?;
+        let opaque = Scene { backdrop: Backdrop::default(), meshes: &meshes, shadows: &shadows };
+        scene.draw(list, view, &lights, targets, &opaque)?;
         Ok(lights)
     }
 

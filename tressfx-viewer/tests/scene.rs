@@ -8,7 +8,7 @@ use tressfx_core::pass::PassList;
 use tressfx_core::shape::Ellipsoid;
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::Targets;
-use tressfx_viewer::scene::{Backdrop, MeshDraw, SceneMesh, ScenePass, Surface, studio_lights};
+use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -24,7 +24,8 @@ fn picture(backend: &mut WgpuBackend, meshes: &[Mesh]) -> Vec<Vec3> {
     let camera = Camera { eye: Vec3::Z * 3.0, target: Vec3::ZERO, fov: 0.6, ..Camera::around(&[Vec3::ONE], SIZE) };
     let view = Camera { near: 0.05, far: 50.0, ..camera }.view(SIZE).unwrap();
     let scene = ScenePass::new(backend, Format::Rgba16F, view.depth(), false).unwrap();
-    scene.draw(&mut list, &view, &studio_lights(), &targets, &Backdrop::default(), &draws, &[]).unwrap();
+    let opaque = Scene { backdrop: Backdrop::default(), meshes: &draws, shadows: &[] };
+    scene.draw(&mut list, &view, &studio_lights(), &targets, &opaque).unwrap();
     let ticket = list.read_texture(targets.color);
     backend.run(&list).unwrap();
     let bytes = backend.read(ticket).ready().expect("it has run");
