@@ -208,6 +208,15 @@ fn targets(backend: &mut dyn Run, size: [u32; 2]) -> [TextureId; 2] {
         .map(|(label, format)| backend.create_texture(&TextureDesc::new(label, size, format)).expect("a texture"))
 }
 
+/// Light in which hair that nothing shades is about as bright as hair in its own shadow.
+fn dimmed(mut lights: Lights) -> Lights {
+    const SHARE: f32 = 0.65;
+    lights.sky *= SHARE;
+    lights.ground *= SHARE;
+    lights.lights.iter_mut().for_each(|light| light.color *= SHARE);
+    lights
+}
+
 /// A screen to draw on.
 pub struct Screen {
     /// The GPU.
@@ -244,7 +253,7 @@ impl Screen {
         let hair = setup.hair_output.then(|| backend.create_texture(&hair).expect("a texture"));
         let view = camera.view(size).expect("a view");
         let (kept, scenes) = (Vec::new(), Vec::new());
-        Self { backend, view, lights: lights(), renderer, may_grow: true, kept, scenes, color, depth, hair }
+        Self { backend, view, lights: dimmed(lights()), renderer, may_grow: true, kept, scenes, color, depth, hair }
     }
 
     /// Another camera, size or technique on the same device. What was compiled is kept; pools begin anew.
