@@ -132,17 +132,18 @@ fn eliminate(strand: Strand, begin: Begin) {
 
         // The vertex after the edge moves by the one before it and `rotation x arm`.
         let arm = length * axis;
-        turn = sum(turn, sum(with_transpose(cross_columns(arm, mixed)), turn_by(arm, place)));
+        let by_arm = mixed_by(arm, across(place, axis));
+        turn = sum(turn, with_transpose(cross_columns(arm, mixed + 0.5 * by_arm)));
         torque += cross(arm, force);
-        mixed += mixed_by(arm, place);
+        mixed += by_arm;
         @if(contacts) {
             let edge = edge_between(strand, at, end_at, moving, end_moving);
             if (is_in(begin.near, vertex) && may_touch(&clear, begin.surface, strand, edge, length)) {
                 let mass = 0.5 * (length + length_after);
                 let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), mass);
-                turn = sum(turn, turn_by(arm, contacts.turn));
+                turn = sum(turn, turn_by(arm, whole(contacts.turn)));
                 torque += cross(arm, contacts.torque);
-                mixed += mixed_by(arm, contacts.mixed);
+                mixed += mixed_by(arm, whole(contacts.mixed));
                 place = sum(place, contacts.place);
                 force += contacts.force;
                 pull += contacts.pull;
@@ -212,12 +213,20 @@ fn hold_place(strand: Strand) -> vec3<f32> {
     return shape_of(strand.root, rest[strand.edges * step.guides + strand.guide].xyz);
 }
 
+/// The columns of a matrix without what they have along an axis. Rotations of an edge about itself do not move its end, and so know nothing
+/// of that; but where a pinned tip is all that a straight strand pulls at, its rounding would be more than all that twist is held by.
+fn across(m: Symmetric, axis: vec3<f32>) -> mat3x3<f32> {
+    let along = times(m, axis);
+    let columns = whole(m);
+    return mat3x3(columns[0] - along.x * axis, columns[1] - along.y * axis, columns[2] - along.z * axis);
+}
+
 /// What a matrix of displacements is as one of displacements by rotations, where these displace by `rotation x arm`;
-fn mixed_by(arm: vec3<f32>, m: Symmetric) -> mat3x3<f32> {
-    return transpose(cross_columns(arm, whole(m)));
+fn mixed_by(arm: vec3<f32>, m: mat3x3<f32>) -> mat3x3<f32> {
+    return transpose(cross_columns(arm, m));
 }
 
 /// and as one of rotations.
-fn turn_by(arm: vec3<f32>, m: Symmetric) -> Symmetric {
+fn turn_by(arm: vec3<f32>, m: mat3x3<f32>) -> Symmetric {
     return symmetric(cross_columns(arm, mixed_by(arm, m)));
 }
