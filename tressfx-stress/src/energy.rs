@@ -46,8 +46,7 @@ impl<'a> Ledger<'a> {
         self.guides().map(|guide| self.gained(guide, before, after, sub_step)).fold(0.0, f64::max)
     }
 
-    #[allow(missing_docs)]
-    pub fn gained(&self, guide: usize, before: &[Vec4], after: &[Vec4], sub_step: f64) -> f64 {
+    fn gained(&self, guide: usize, before: &[Vec4], after: &[Vec4], sub_step: f64) -> f64 {
         let range = self.range(guide);
         let length: f64 = self.strands.rest_lengths[range.clone()].iter().map(|&length| f64::from(length)).sum();
         let mass = length;
