@@ -292,9 +292,9 @@ mod tests {
     fn what_is_left_of_a_speed_is_what_the_formulas_in_time_leave() {
         for drag in [0.0, 1.0, 60.0, 1000.0] {
             let (sub_step, sub_steps) = (0.02, 25);
-            let z = 0.5 * drag * sub_step;
+            let z: f64 = 0.5 * drag * sub_step;
             let (mut first, mut second, mut before) = (1.0_f64, 1.0 / (1.0 + z), 1.0_f64);
-            let mut largest = second.abs();
+            let mut largest = 0.0_f64;
             for _ in 0..sub_steps {
                 first /= 1.0 + z;
                 (second, before) = ((2.0 * second - 0.5 * before) / (1.5 + z), second);

@@ -162,6 +162,24 @@ mod tests {
     }
 
     #[test]
+    fn bent_joints_are_held_by_more_than_half_of_the_derivative_of_their_torque() {
+        let directions = || (0..200).map(|i| (f64::from(i) * 0.7, f64::from(i) * 2.4));
+        let direction =
+            |(up, around): (f64, f64)| DVec3::new(up.sin() * around.cos(), up.sin() * around.sin(), up.cos());
+        for twist_ratio in [0.1, 0.77, 10.0] {
+            let stiffness = Stiffness { bending: 2.0, twist_ratio, lag: 0.0 };
+            for bend in directions().take(20).map(|angles| 1.5 * direction(angles)) {
+                let joint = Joint::new(DQuat::IDENTITY, DQuat::IDENTITY, DQuat::from_scaled_axis(bend));
+                let (torque, held) = (joint.torque_by_child(&stiffness), joint.stiffness(&stiffness));
+                for axis in directions().map(direction) {
+                    let share = -axis.dot(torque * axis) / axis.dot(held * axis);
+                    assert!(share < 2.0, "{twist_ratio}, bent by {bend}: {share} about {axis}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn derivatives_of_the_torque_are_what_it_changes_by() {
         let turn = |x: f64, y: f64, z: f64| DQuat::from_euler(EulerRot::XYZ, x, y, z);
         let (parent, half) = (turn(0.3, -1.0, 2.0), turn(0.1, 0.4, -0.2));
