@@ -9,8 +9,8 @@ import package::rod::{
 import package::root::shape_of;
 import package::step::step;
 import package::symmetric::{
-    Symmetric, cross_columns, inverse, outer, scaled, scaled_identity, sum, symmetric, symmetric_product, times, trace, whole,
-    with_transpose,
+    Symmetric, cross_columns, factors_of, outer, scaled, scaled_identity, solved, solved_columns, sum, symmetric, symmetric_product,
+    times, trace, whole, with_transpose,
 };
 import package::vector::direction_or;
 @if(contacts)
@@ -38,18 +38,18 @@ struct Begin {
 }
 
 /// What is left of an edge: its rotation is `free + inverse * (K * rotation of its parent - transpose(mixed) * displacement of the vertex
-/// before it)`, with the stiffness K of its joint.
+/// before it)`, with the stiffness K of its joint; of the inverse the factors are left.
 struct Left {
     free: vec3<f32>,
-    inverse: Symmetric,
+    factors: Symmetric,
     mixed: mat3x3<f32>,
     /// The bending stiffness that K has.
     bending: f32,
 }
 
 fn store_left(strand: Strand, vertex: u32, left: Left) {
-    rods[slot(strand, vertex, LEFT)] = vec4(left.inverse.diagonal, left.bending);
-    rods[slot(strand, vertex, LEFT + 1u)] = vec4(left.inverse.beside, 0.0);
+    rods[slot(strand, vertex, LEFT)] = vec4(left.factors.diagonal, left.bending);
+    rods[slot(strand, vertex, LEFT + 1u)] = vec4(left.factors.beside, 0.0);
     rods[slot(strand, vertex, LEFT + 2u)] = vec4(left.mixed[0], left.free.x);
     rods[slot(strand, vertex, LEFT + 3u)] = vec4(left.mixed[1], left.free.y);
     rods[slot(strand, vertex, LEFT + 4u)] = vec4(left.mixed[2], left.free.z);
@@ -61,8 +61,8 @@ fn left_of(strand: Strand, vertex: u32) -> Left {
     let first = rods[slot(strand, vertex, LEFT + 2u)];
     let second = rods[slot(strand, vertex, LEFT + 3u)];
     let third = rods[slot(strand, vertex, LEFT + 4u)];
-    let inverse = Symmetric(diagonal.xyz, beside.xyz);
-    return Left(vec3(first.w, second.w, third.w), inverse, mat3x3(first.xyz, second.xyz, third.xyz), diagonal.w);
+    let factors = Symmetric(diagonal.xyz, beside.xyz);
+    return Left(vec3(first.w, second.w, third.w), factors, mat3x3(first.xyz, second.xyz, third.xyz), diagonal.w);
 }
 
 /// A vertex: where the past says that it would be without forces, and with gravity alone, from where it is.
@@ -132,17 +132,18 @@ fn eliminate(strand: Strand, begin: Begin) {
 
         // The vertex after the edge moves by the one before it and `rotation x arm`.
         let arm = length * axis;
-        turn = sum(turn, sum(with_transpose(cross_columns(arm, mixed)), turn_by(arm, place)));
+        let by_arm = mixed_by(arm, across(place, axis));
+        turn = sum(turn, with_transpose(cross_columns(arm, mixed + 0.5 * by_arm)));
         torque += cross(arm, force);
-        mixed += mixed_by(arm, place);
+        mixed += by_arm;
         @if(contacts) {
             let edge = edge_between(strand, at, end_at, moving, end_moving);
             if (is_in(begin.near, vertex) && may_touch(&clear, begin.surface, strand, edge, length)) {
                 let mass = 0.5 * (length + length_after);
                 let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), mass);
-                turn = sum(turn, turn_by(arm, contacts.turn));
+                turn = sum(turn, turn_by(arm, whole(contacts.turn)));
                 torque += cross(arm, contacts.torque);
-                mixed += mixed_by(arm, contacts.mixed);
+                mixed += mixed_by(arm, whole(contacts.mixed));
                 place = sum(place, contacts.place);
                 force += contacts.force;
                 pull += contacts.pull;
@@ -167,11 +168,10 @@ fn eliminate(strand: Strand, begin: Begin) {
 
         // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
         turn = sum(turn, outer(LEAST_TWIST * trace(sum(turn, stiff)), axis));
-        let inverted = inverse(sum(turn, stiff));
-        let rows = transpose(mixed);
-        let by_place = mat3x3(times(inverted, rows[0]), times(inverted, rows[1]), times(inverted, rows[2]));
-        let free = times(inverted, torque + own);
-        store_left(strand, vertex, Left(free, inverted, mixed, spring.bending));
+        let factors = factors_of(sum(turn, stiff));
+        let by_place = solved_columns(factors, transpose(mixed));
+        let free = solved(factors, torque + own);
+        store_left(strand, vertex, Left(free, factors, mixed, spring.bending));
 
         let mass = 0.5 * (length_before + length);
         let vertex_axis = direction_or(axis + direction, axis);
@@ -179,9 +179,9 @@ fn eliminate(strand: Strand, begin: Begin) {
         place = sum(sum(place, scaled(-1.0, symmetric_product(mixed, by_place))), before.mass);
         force += before.force - mixed * free;
         // Equal to `stiff * free - own`, without the difference of two large numbers.
-        torque = torque_by(spring, times(inverted, torque)) - times(turn, times(inverted, own));
+        torque = torque_by(spring, solved(factors, torque)) - times(turn, solved(factors, own));
         mixed = by_spring(transpose(by_place), spring);
-        turn = scaled(0.5, with_transpose(by_spring(whole(turn) * whole(inverted), spring)));
+        turn = scaled(0.5, with_transpose(whole(turn) * solved_columns(factors, whole(stiff))));
         pull += before.force;
 
         after_edge = before_edge;
@@ -213,12 +213,20 @@ fn hold_place(strand: Strand) -> vec3<f32> {
     return shape_of(strand.root, rest[strand.edges * step.guides + strand.guide].xyz);
 }
 
+/// The columns of a matrix without what they have along an axis. Rotations of an edge about itself do not move its end, and so know nothing
+/// of that; but where a pinned tip is all that a straight strand pulls at, its rounding would be more than all that twist is held by.
+fn across(m: Symmetric, axis: vec3<f32>) -> mat3x3<f32> {
+    let along = times(m, axis);
+    let columns = whole(m);
+    return mat3x3(columns[0] - along.x * axis, columns[1] - along.y * axis, columns[2] - along.z * axis);
+}
+
 /// What a matrix of displacements is as one of displacements by rotations, where these displace by `rotation x arm`;
-fn mixed_by(arm: vec3<f32>, m: Symmetric) -> mat3x3<f32> {
-    return transpose(cross_columns(arm, whole(m)));
+fn mixed_by(arm: vec3<f32>, m: mat3x3<f32>) -> mat3x3<f32> {
+    return transpose(cross_columns(arm, m));
 }
 
 /// and as one of rotations.
-fn turn_by(arm: vec3<f32>, m: Symmetric) -> Symmetric {
+fn turn_by(arm: vec3<f32>, m: mat3x3<f32>) -> Symmetric {
     return symmetric(cross_columns(arm, mixed_by(arm, m)));
 }

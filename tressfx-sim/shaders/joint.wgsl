@@ -10,7 +10,9 @@ const FLIP: f32 = 1.0;
 struct Joint {
     /// The parent's frame, turned by half of the rest rotation of the joint.
     middle: vec4<f32>,
-    /// What the child's frame, turned back by the other half, is turned from there; the shorter way.
+    /// The child's frame, turned back by the other half.
+    back: vec4<f32>,
+    /// What that one is turned from there; the shorter way.
     turn: vec4<f32>,
     /// Two components of bending and one of twist.
     strain: vec3<f32>,
@@ -24,13 +26,18 @@ fn slope(w: f32) -> f32 {
     return 4.0 / (1.0 + w * w);
 }
 
+/// The child's frame, turned back by half of the rest rotation.
+fn turned_back(child: vec4<f32>, half_turn: vec4<f32>) -> vec4<f32> {
+    return after(child, vec4(-half_turn.xyz, half_turn.w));
+}
+
 /// `half_turn` is half of the rest rotation from the parent to the child.
 fn joint_between(parent: vec4<f32>, half_turn: vec4<f32>, child: vec4<f32>) -> Joint {
     let middle = after(parent, half_turn);
-    let back = after(child, vec4(-half_turn.xyz, half_turn.w));
+    let back = turned_back(child, half_turn);
     let turn = after(vec4(-middle.xyz, middle.w), back);
     let shorter = select(turn, -turn, turn.w < 0.0);
-    return Joint(middle, shorter, slope(shorter.w) * shorter.xyz);
+    return Joint(middle, back, shorter, slope(shorter.w) * shorter.xyz);
 }
 
 /// The lag of the moments of a joint, which is 0 where it has flipped over since `past`. Torque and stiffness have to have the same one.
@@ -58,11 +65,14 @@ struct Spring { bending: f32, twist_ratio: f32, axis: vec3<f32> }
 fn spring_of(joint: Joint, stiffness: Stiffness) -> Spring {
     let stiffer = 0.5 * slope(joint.turn.w);
     let bending = stiffer * stiffer * stiffer * (1.0 + stiffness.lag) * stiffness.bending;
-    return Spring(bending, stiffness.twist_ratio, twist_axis(joint.middle));
+    return Spring(bending, stiffness.twist_ratio, twist_axis(joint.middle, joint.back));
 }
 
-fn twist_axis(middle: vec4<f32>) -> vec3<f32> {
-    return rotate(middle, vec3(0.0, 0.0, 1.0));
+/// The axis that twist is stiff about: halfway from one frame to the other, the shorter way. With that of either of them a bent joint
+/// whose twist is much stiffer or softer than its bending is held several times too weakly, and what the rounds find swings to and fro.
+fn twist_axis(middle: vec4<f32>, back: vec4<f32>) -> vec3<f32> {
+    let halfway = normalize(middle + select(back, -back, dot(middle, back) < 0.0));
+    return rotate(halfway, vec3(0.0, 0.0, 1.0));
 }
 
 fn torque_by(spring: Spring, turn: vec3<f32>) -> vec3<f32> {

@@ -1,12 +1,12 @@
 // The sweep of a round from the root to the tip: turns each edge, and leaves what the next sub-step begins with.
 
 import package::eliminate::{Left, left_of};
-import package::joint::{Spring, torque_by, twist_axis};
+import package::joint::{Spring, torque_by, turned_back, twist_axis};
 import package::rod::{
     AIMED, FRAME, GUESS, Strand, TURNED, along, half_turn, moved_slot, positions, rest_before, rods, slot, speed_of,
 };
 import package::step::step;
-import package::symmetric::times;
+import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(contacts)
 import package::rod_touch::{Found, edge_between, look_at, may_touch, nothing_near};
@@ -104,9 +104,11 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
         let length = here.rest.w;
-        let spring = Spring(here.left.bending, step.twist_ratio, twist_axis(after(parent, half_turn(here.rest))));
+        let half = half_turn(here.rest);
+        let axis = twist_axis(after(parent, half), turned_back(here.now, half));
+        let spring = Spring(here.left.bending, step.twist_ratio, axis);
         let torque = torque_by(spring, parent_turn) - shift * here.left.mixed;
-        var turn = here.left.free + times(here.left.inverse, torque);
+        var turn = here.left.free + solved(here.left.factors, torque);
         let size = sqrt(dot(turn, turn));
         turn *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
         round.longest = max(round.longest, min(size, LONGEST_TURN));

@@ -57,15 +57,34 @@ fn with_transpose(m: mat3x3<f32>) -> Symmetric {
     return Symmetric(2.0 * vec3(m[0].x, m[1].y, m[2].z), vec3(m[2].y, m[0].z, m[1].x) + vec3(m[1].z, m[2].x, m[0].y));
 }
 
-/// The inverse. The trace is taken out first: of the shortest strands the determinant alone would be 0 in f32.
-fn inverse(m: Symmetric) -> Symmetric {
-    let size = 1.0 / trace(m);
-    let d = size * m.diagonal;
-    let b = size * m.beside;
-    let diagonal = d.yzx * d.zxy - b * b;
-    let beside = b.yzx * b.zxy - d * b;
-    let share = size / (d.x * diagonal.x + b.z * beside.z + b.y * beside.y);
-    return Symmetric(share * diagonal, share * beside);
+/// A pivot is never less than this share of the trace: less is rounding.
+const LEAST_PIVOT: f32 = 1e-7;
+
+/// The factors L and D of `m = L * D * transpose(L)`: the inverse of D, and what L has beside its diagonal of ones. The inverse itself would
+/// not do: rounding of what it makes of the weakest direction is more than all that it makes of one that is a million times stiffer.
+fn factors_of(m: Symmetric) -> Symmetric {
+    let least = LEAST_PIVOT * trace(m);
+    let x = 1.0 / max(m.diagonal.x, least);
+    let xy = x * m.beside.z;
+    let zx = x * m.beside.y;
+    let y = 1.0 / max(m.diagonal.y - xy * m.beside.z, least);
+    let left = m.beside.x - xy * m.beside.y;
+    let yz = y * left;
+    let z = 1.0 / max(m.diagonal.z - zx * m.beside.y - yz * left, least);
+    return Symmetric(vec3(x, y, z), vec3(yz, zx, xy));
+}
+
+/// What a matrix of these factors takes to `v`.
+fn solved(factors: Symmetric, v: vec3<f32>) -> vec3<f32> {
+    let y = v.y - factors.beside.z * v.x;
+    let z = v.z - factors.beside.y * v.x - factors.beside.x * y;
+    let scaled = factors.diagonal * vec3(v.x, y, z);
+    let before = scaled.y - factors.beside.x * scaled.z;
+    return vec3(scaled.x - factors.beside.z * before - factors.beside.y * scaled.z, before, scaled.z);
+}
+
+fn solved_columns(factors: Symmetric, m: mat3x3<f32>) -> mat3x3<f32> {
+    return mat3x3(solved(factors, m[0]), solved(factors, m[1]), solved(factors, m[2]));
 }
 
 /// The columns of `v x m`.

@@ -120,15 +120,16 @@ impl<'a> Judge<'a> {
         if sight.calm == 0.0 {
             return;
         }
-        let speeds = speeds(&self.case.strands, &self.last, sight);
+        let speeds = speeds(&self.case.strands, &self.last, sight, |_, _| true);
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         let at_first = self.speeds.get_or_insert_with(|| speeds.clone());
         if sight.calm < CALM {
             return;
         }
+        let carried = self::speeds(&self.case.strands, &self.last, sight, is_held);
         let bounds = at_first.iter().enumerate().map(|(guide, first)| {
-            let may = allowed_speed(self.case, sight.params, guide, *first, sight.calm);
-            speeds[guide] / may
+            let before = Before { first: *first, calm: sight.calm, sub_step: sight.sub_step };
+            speeds[guide] / (allowed_speed(self.case, sight.params, guide, &before) + WHIP * carried[guide])
         });
         self.restless = bounds.fold(0.0, f64::max);
         self.verdict.rest_speed = Some(fastest);
@@ -181,19 +182,25 @@ fn worst_edge(strands: &Strands, positions: &[Vec4]) -> f64 {
     worst
 }
 
-/// The highest speed of a vertex of each guide in a sub-step, beyond rounding, m/s.
-fn speeds(strands: &Strands, before: &[Vec4], sight: &Sight) -> Vec<f64> {
+/// The highest speed of a vertex of each guide in a sub-step, beyond rounding, m/s; of those at the root for which `counts` says so.
+fn speeds(strands: &Strands, before: &[Vec4], sight: &Sight, counts: fn(usize, &Vec4) -> bool) -> Vec<f64> {
     let vertices = strands.vertices as usize;
     let pairs = before.chunks(vertices).zip(sight.positions.chunks(vertices)).take(strands.guides as usize);
     let speed = |(before, after): (&[Vec4], &[Vec4])| {
+        let counted = after.iter().enumerate().take_while(|(vertex, place)| counts(*vertex, place));
         let moved = before
             .iter()
-            .zip(after)
-            .map(|(before, after)| before.truncate().as_dvec3().distance(after.truncate().as_dvec3()));
+            .zip(counted)
+            .map(|(before, (_, after))| before.truncate().as_dvec3().distance(after.truncate().as_dvec3()));
         let moved = (moved.fold(0.0, f64::max) - rounding(after)).max(0.0);
         moved / sight.sub_step * f64::from(strands.metres_per_unit)
     };
     pairs.map(speed).collect()
+}
+
+/// Whether a vertex is the root, or is held by it as those before it are.
+fn is_held(vertex: usize, place: &Vec4) -> bool {
+    vertex == 0 || place.w == 0.0
 }
 
 /// The rate at which a solver's air takes speed away, 1/s.
@@ -204,20 +211,41 @@ fn drag(solver: SolverName, params: &SimParams) -> f64 {
     })
 }
 
-/// How fast a guide may be after `calm` seconds in which nothing happened, m/s. With the drag `c`:
+/// What is known of a guide that nothing has happened to for a while.
+struct Before {
+    /// Its speed at first, m/s.
+    first: f64,
+    /// How long nothing has happened, and the length of a sub-step, s.
+    calm: f64,
+    sub_step: f64,
+}
+
+impl Before {
+    /// What is left of a speed that air takes away at the rate `drag`, of which a swing loses half: `exp(-z)` in a sub-step, with half of
+    /// drag times sub-step as `z`. No formula in time is as fast where that is more than 1: that of first order leaves `1 / (1 + z)`, which
+    /// is more than the exponential for any `z`, and that of second order `1 / sqrt(3 + 2 z)`, the roots of
+    /// `(3 / 2 + z) r^2 - 2 r + 1 / 2`.
+    fn left(&self, drag: f64) -> f64 {
+        let z = 0.5 * drag * self.sub_step;
+        let in_a_sub_step = (1.0 / (1.0 + z)).max(1.0 / (3.0 + 2.0 * z).sqrt());
+        in_a_sub_step.powf(self.calm / self.sub_step)
+    }
+}
+
+/// How fast a guide may be whose root stands still, m/s:
 ///
-/// * what moved at first swings on, and loses a factor of `exp(c t / 2)`;
+/// * what moved at first swings on, see [`Before::left`];
 /// * what falls has no more than a fall by twice its length gives, nor than where drag and weight balance;
 /// * what creeps back at a rate `r`, since drag is stronger than its springs, has `r exp(-r t) x`, which is at most `x / (e t)`,
 ///   with `x` no more than twice the length.
-fn allowed_speed(case: &Case, params: &SimParams, guide: usize, first: f64, calm: f64) -> f64 {
+fn allowed_speed(case: &Case, params: &SimParams, guide: usize, before: &Before) -> f64 {
     let vertices = case.strands.vertices as usize;
     let lengths = &case.strands.rest_lengths[guide * vertices..(guide + 1) * vertices];
     let length = lengths.iter().map(|&length| f64::from(length)).sum::<f64>() * f64::from(case.strands.metres_per_unit);
     let (drag, gravity) = (drag(case.solver, params), f64::from(params.gravity.length()));
-    let swing = first * (-drag * calm / 2.0).exp();
+    let swing = before.first * before.left(drag);
     let fall = (4.0 * gravity * length).sqrt().min(2.0 * gravity / drag);
-    let creep = 2.0 * length / (std::f64::consts::E * calm);
+    let creep = 2.0 * length / (std::f64::consts::E * before.calm);
     WHIP * (swing + fall + creep) + f64::MIN_POSITIVE
 }
 
@@ -255,8 +283,27 @@ mod tests {
         let case = Case::new(0, SolverName::Direct, Part::ALL).unwrap();
         let at = |air_drag: f32| {
             let params = SimParams { air_drag, air_drag_along: 1.0, ..SimParams::default() };
-            allowed_speed(&case, &params, 0, 10.0, 0.5)
+            allowed_speed(&case, &params, 0, &Before { first: 10.0, calm: 0.5, sub_step: 1.0 / 120.0 })
         };
         assert!(at(0.0) > 30.0 && at(20.0) < at(5.0) && at(5.0) < at(0.0));
+    }
+
+    #[test]
+    fn what_is_left_of_a_speed_is_what_the_formulas_in_time_leave() {
+        for drag in [0.0, 1.0, 60.0, 1000.0] {
+            let (sub_step, sub_steps) = (0.02, 25);
+            let z: f64 = 0.5 * drag * sub_step;
+            let (mut first, mut second, mut before) = (1.0_f64, 1.0 / (1.0 + z), 1.0_f64);
+            let mut largest = 0.0_f64;
+            for _ in 0..sub_steps {
+                first /= 1.0 + z;
+                (second, before) = ((2.0 * second - 0.5 * before) / (1.5 + z), second);
+                largest = second.abs().max(before.abs());
+            }
+            let left = Before { first: 1.0, calm: 0.5, sub_step }.left(drag);
+            assert!(left >= first * (1.0 - 1e-9), "{drag}: {left} {first}");
+            assert!(left >= 0.1 * largest, "{drag}: {left} {largest}");
+            assert!(left <= 10.0 * first.max(largest), "{drag}: {left} is more than {first} and {largest}");
+        }
     }
 }
