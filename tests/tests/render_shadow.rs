@@ -232,3 +232,28 @@ fn hair_behind_a_ball_is_dark() {
         assert!(dark > 300 && lit > 3000, "{dark} dark, {lit} lit");
     }
 }
+
+/// Hair that moves as a whole has the same shadow: what differs is only how it falls into the cells. The light does not come through the
+/// skin: that is in a cell or not.
+#[test]
+fn shadows_swim_little_when_hair_moves_as_a_whole() {
+    let Some(mut screen) = shadowed(ShadowDesc::default()) else { return };
+    screen.lights.lights = vec![Light::directional(Vec3::new(1.0, -0.3, 0.4), Vec3::ONE)];
+    let groom = Groom::wavy(3000, 16, 1, Material::default().with(|m| m.fibre_radius = Some(0.0005)));
+    let mut at = |x: f32| {
+        let pose = Pose { translation: Vec3::new(x, 0.3 * x, 0.0), ..Pose::IDENTITY };
+        let (found, _) = arriving(&mut screen, &ShadowDesc::default(), &Groom { pose, ..groom.clone() });
+        found[4 * 3000..].to_vec()
+    };
+    let mut before = at(0.0);
+    for step in 1..=6 {
+        // A fifth of a cell.
+        let now = at(0.0017 * step as f32);
+        let off: Vec<f64> = before.iter().zip(&now).map(|(a, b)| (a.lights[0] - b.lights[0]).abs()).collect();
+        let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+        let [most, all] = [0.99, 1.0].map(|share| quantile(off.clone(), share));
+        eprintln!("step {step}: RMS {rms:.4}, 99 of 100 vertices within {most:.4}, all within {all:.4}");
+        assert!(rms < 0.02 && most < 0.07 && all < 0.2, "{rms} {most} {all}");
+        before = now;
+    }
+}
