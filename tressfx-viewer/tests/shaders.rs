@@ -107,6 +107,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "pull",
         "roots",
         "shaded",
+        "shadows",
         "unshaded",
     ];
     // It is always written for capsules.
@@ -156,6 +157,7 @@ fn labels_of_kernels() -> BTreeSet<String> {
         ("sim", "shaders"),
         ("render", "shaders"),
         ("render", "shaders/ppll"),
+        ("render", "shaders/shadow"),
         ("render", "shaders/shortcut"),
         ("render", "shaders/tiles"),
     ];
