@@ -8,8 +8,8 @@ use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    Counters, HAIR_FORMAT, HairRenderer, Lights, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
-    ShadowDesc, StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
+    Bends, Counters, HAIR_FORMAT, HairRenderer, Lights, Lod, Material, PpllDesc, RenderDesc, SectionDraw,
+    ShadedStrands, ShadowDesc, StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
 };
 
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -31,6 +31,8 @@ pub struct Groom {
     pub material: Material,
     /// Where it is moved to.
     pub pose: Pose,
+    /// What of it is drawn.
+    pub lod: Lod,
 }
 
 impl Groom {
@@ -53,9 +55,11 @@ impl Groom {
                 metres_per_unit: 1.0,
                 fitting_radius: 0.000_1,
                 sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
+                bends: Bends::default(),
             },
             material,
             pose: Pose::IDENTITY,
+            lod: Lod::FULL,
         }
     }
 
@@ -80,7 +84,7 @@ impl Groom {
     /// As the references take it.
     pub fn reference(&self) -> reference::Strands<'_> {
         reference::Strands {
-            uniform: uniforms::SectionUniform::new(self.shape, &self.info, &self.material, &self.pose),
+            uniform: uniforms::SectionUniform::new(self.shape, &self.info, &self.material, &self.pose, &self.lod),
             positions: &self.positions,
             tangents: &self.tangents,
             arriving: None,
@@ -368,8 +372,9 @@ impl Screen {
     fn over(&mut self, mut list: PassList, views: &[View], grooms: &[&Groom]) -> Picture {
         let sections: Vec<_> = grooms.iter().map(|groom| self.placed(&mut list, groom)).collect();
         let pairs = sections.iter().zip(grooms);
-        let draws: Vec<_> =
-            pairs.map(|((_, strands), groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
+        let draws: Vec<_> = pairs
+            .map(|((_, strands), groom)| SectionDraw::new(strands, &groom.material, groom.pose).lod(groom.lod))
+            .collect();
         if self.may_grow {
             views
                 .iter()

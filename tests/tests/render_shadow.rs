@@ -12,17 +12,17 @@ use tressfx_core::shape::Ellipsoid;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::reference::{Arriving, Shadows, shadow_light, shadow_opaque};
 use tressfx_render::uniforms::{OpaqueUniform, ShadowUniform};
-use tressfx_render::{Light, Lights, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
+use tressfx_render::{Light, Lights, Lod, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
 
 use support::screen;
 
 const DESC: fn() -> ShadowDesc = || ShadowDesc::default().texels(96, 48).cells(24);
 
-/// What the kernels leave at each vertex of a groom, and what the references do.
+/// What the kernels leave at each vertex of a groom that is drawn, and what the references do.
 fn arriving(screen: &mut Screen, desc: &ShadowDesc, groom: &Groom) -> (Vec<Arriving>, Vec<Arriving>) {
     let mut list = PassList::new();
     let section = screen.section(&mut list, groom);
-    let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+    let draws = [SectionDraw::new(&section, &groom.material, groom.pose).lod(groom.lod)];
     let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
     screen.renderer.draw(&mut list, &[view], &draws).unwrap();
     let ticket = list.read_buffer(section.arriving(), 0, 16 * groom.positions.len() as u64);
@@ -31,8 +31,12 @@ fn arriving(screen: &mut Screen, desc: &ShadowDesc, groom: &Groom) -> (Vec<Arriv
     let lights = screen.lights.clone();
     let strands = groom.reference();
     let shadows = Shadows::new(&uniform, &lights, &[strands]);
-    let expected = (0..groom.positions.len()).map(|i| shadow_light(&shadows, strands.posed(i))).collect();
-    (bytes.chunks(16).map(decoded).collect(), expected)
+    let lod = groom.lod.uniform(groom.shape);
+    let last = groom.shape.vertices - 1;
+    let drawn = (0..lod.vertices).flat_map(|v| (0..lod.strands).map(move |strand| (strand, (v * lod.step).min(last))));
+    let drawn = || drawn.clone().map(|(strand, vertex)| groom.shape.index(strand, vertex) as usize);
+    let expected = drawn().map(|i| shadow_light(&shadows, strands.posed(i))).collect();
+    (drawn().map(|i| decoded(&bytes[16 * i..])).collect(), expected)
 }
 
 fn decoded(bytes: &[u8]) -> Arriving {
@@ -54,6 +58,11 @@ fn quantile(mut differences: Vec<f64>, of_all: f64) -> f64 {
 #[test]
 fn every_vertex_is_as_in_f64() {
     let Some(mut screen) = shadowed(DESC()) else { return };
+    // All of it, and fewer strands of fewer vertices, the last of which does not come in its turn.
+    [Lod::FULL, Lod { share: 0.4005, step: 4 }].into_iter().for_each(|lod| is_as_in_f64(&mut screen, lod));
+}
+
+fn is_as_in_f64(screen: &mut Screen, lod: Lod) {
     screen.lights = Lights {
         sky: Vec3::ONE,
         ground: Vec3::splat(0.2),
@@ -67,8 +76,8 @@ fn every_vertex_is_as_in_f64() {
     };
     let pose = Pose { rotation: glam::Quat::from_rotation_z(0.4), translation: Vec3::new(0.1, 0.2, -0.3) };
     let material = Material::default().with(|m| m.fibre_radius = Some(0.002));
-    let groom = Groom { pose, ..Groom::wavy(700, 16, 1, material) };
-    let (found, expected) = arriving(&mut screen, &DESC(), &groom);
+    let groom = Groom { pose, lod, ..Groom::wavy(700, 16, 1, material) };
+    let (found, expected) = arriving(screen, &DESC(), &groom);
     for light in 0..5 {
         let shares = || expected.iter().map(|expected| expected.lights[light]);
         let off = found.iter().zip(&expected).map(|(a, b)| (a.lights[light] - b.lights[light]).abs()).collect();

@@ -4,7 +4,7 @@
 import package::grid::{GROUP, thread_index};
 import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, strand_random};
+import package::section::{SectionUniform, drawn_vertex, strand_random};
 import package::view::{ViewUniform, towards, towards_eye};
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -67,13 +67,15 @@ fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
 @compute @workgroup_size(GROUP)
 fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
          @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    if i >= section.strands * section.vertices {
+    let thread = thread_index(group, groups, lane);
+    if thread >= section.lod.strands * section.lod.vertices {
         return;
     }
-    let strand = i % section.strands;
+    let drawn = drawn_vertex(section.lod, thread, section.vertices);
+    let strand = drawn.x;
+    let i = drawn.y * section.strands + strand;
     let guide = strand % section.guides;
-    let along = f32(i / section.strands) / f32(section.vertices - 1u);
+    let along = f32(drawn.y) / f32(section.vertices - 1u);
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));

@@ -4,6 +4,8 @@ use tressfx_core::error::Error;
 use tressfx_core::view::PoseError;
 
 use crate::lights::{Lights, MAX_LIGHTS};
+use crate::lod::Lod;
+use crate::strands::SectionDraw;
 use crate::views::MAX_VIEWS;
 
 /// Why hair is not drawn.
@@ -37,9 +39,26 @@ pub enum DrawError {
     /// The pose of a section is not valid.
     #[error("hair.render: {0}")]
     Pose(#[from] PoseError),
+    /// The level of detail of a section is not valid.
+    #[error(
+        "hair.render: a level of detail of {share} of the strands in steps of {step}: it takes a share above 0 and up to 1, and steps of at least 1"
+    )]
+    Lod {
+        /// Of the strands.
+        share: f32,
+        /// Between vertices.
+        step: u32,
+    },
     /// A rule of the contract is broken, or the device fails.
     #[error(transparent)]
     Backend(#[from] Error),
+}
+
+/// Whether a section can be drawn like this.
+pub(crate) fn check_section(draw: &SectionDraw) -> Result<(), DrawError> {
+    draw.pose.validate()?;
+    let Lod { share, step } = draw.lod;
+    if draw.lod.is_valid() { Ok(()) } else { Err(DrawError::Lod { share, step }) }
 }
 
 /// Whether a view can have these lights.

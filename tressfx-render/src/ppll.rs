@@ -421,7 +421,7 @@ impl TechniqueInstance for Ppll {
 
 /// Groups that fill the lists from a section.
 fn groups(draw: &SectionDraw) -> u64 {
-    let [x, y, z] = Grid::for_threads(draw.strands.buffers.shape.segments(), GROUP).0.map(u64::from);
+    let [x, y, z] = Grid::for_threads(draw.segments(), GROUP).0.map(u64::from);
     x * y * z
 }
 

@@ -67,14 +67,18 @@ fn sum(view: &View, draws: &[SectionDraw], of: impl Fn(&Strip) -> f32) -> f64 {
     let of_section = |draw: &SectionDraw| {
         let info = &draw.strands.info;
         let to_eye = view.lens().to_eye * draw.pose.matrix();
-        let radius = info.radius(draw.material);
+        let radius = info.radius(draw.material) * draw.lod.widening(draw.strands.buffers.shape);
         let width = |share: f32| radius * (draw.material.tip_width + (1.0 - draw.material.tip_width) * share);
         // A root and a tip a strand.
-        let ends = 2.0 / (draw.strands.buffers.shape.vertices - 1).max(1) as f32;
+        let lod = draw.lod_uniform();
+        let ends = 2.0 / (lod.vertices - 1).max(1) as f32;
+        // What is drawn leads over several segments.
+        let longer = (draw.strands.buffers.shape.vertices - 1) as f32 / (lod.vertices - 1).max(1) as f32;
         let strip = |(at, shares): &([Vec3; 2], [f32; 2])| Strip::new(view, to_eye, *at, shares.map(width));
-        let strips = info.sample.iter().filter_map(strip).map(|strip| Strip { ends, ..strip });
+        let strips =
+            info.sample.iter().filter_map(strip).map(|strip| Strip { ends, delta: strip.delta * longer, ..strip });
         let sum: f64 = strips.map(|strip| f64::from(of(&strip))).sum();
-        sum * f64::from(draw.strands.buffers.shape.segments()) / info.sample.len() as f64
+        sum * f64::from(draw.segments()) / info.sample.len() as f64
     };
     draws.iter().filter(|draw| !draw.strands.info.sample.is_empty()).map(of_section).sum()
 }

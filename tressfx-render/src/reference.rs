@@ -75,11 +75,17 @@ pub struct Strands<'a> {
 }
 
 impl Strands<'_> {
-    fn index(&self, strand: u32, vertex: u32) -> usize {
-        (vertex * self.uniform.strands + strand) as usize
+    /// The vertex of the buffers that a drawn one is.
+    fn full_vertex(&self, vertex: u32) -> u32 {
+        (vertex * self.uniform.lod.step).min(self.uniform.vertices - 1)
     }
 
-    /// Whether anything is drawn from a vertex.
+    /// Of a drawn vertex.
+    fn index(&self, strand: u32, vertex: u32) -> usize {
+        (self.full_vertex(vertex) * self.uniform.strands + strand) as usize
+    }
+
+    /// Whether anything is drawn from a drawn vertex.
     fn is_sound(&self, strand: u32, vertex: u32) -> bool {
         self.positions[self.index(strand, vertex)][..3].iter().all(|x| x.abs() < 1e12)
     }
@@ -91,14 +97,22 @@ impl Strands<'_> {
 
     /// The vertex to which a segment leads from this one.
     fn after(&self, strand: u32, vertex: u32) -> Option<u32> {
-        Some(vertex + 1).filter(|&after| after < self.uniform.vertices && self.is_sound(strand, after))
+        Some(vertex + 1).filter(|&after| after < self.uniform.lod.vertices && self.is_sound(strand, after))
     }
 
     /// Radius of the fibre at a vertex.
     fn radius(&self, strand: u32, vertex: u32) -> f64 {
-        let share = f64::from(self.thickness[(vertex * self.uniform.guides + strand % self.uniform.guides) as usize]);
-        let tip = f64::from(self.uniform.tip_width);
-        f64::from(self.uniform.fibre_radius) * (tip + (1.0 - tip) * share)
+        let lod = &self.uniform.lod;
+        let fade = if strand + 1 == lod.strands { f64::from(lod.fade) } else { 1.0 };
+        fade * self.full_radius(strand, vertex)
+    }
+
+    /// The same where no strand fades.
+    fn full_radius(&self, strand: u32, vertex: u32) -> f64 {
+        let of = &self.uniform;
+        let share = f64::from(self.thickness[(self.full_vertex(vertex) * of.guides + strand % of.guides) as usize]);
+        let tip = f64::from(of.tip_width);
+        f64::from(of.fibre_radius) * (tip + (1.0 - tip) * share)
     }
 
     /// The position of a vertex in the world: transformed by the pose of the section.

@@ -8,7 +8,7 @@ use tressfx_core::shader::Binding;
 use tressfx_core::view::View;
 
 use crate::counters::Counters;
-use crate::draw_error::{DrawError, check_lights};
+use crate::draw_error::{DrawError, check_lights, check_section};
 use crate::lights::Lights;
 use crate::output::Output;
 use crate::shade::Shade;
@@ -226,7 +226,7 @@ impl HairRenderer {
         draws: &[SectionDraw],
     ) -> std::result::Result<(), DrawError> {
         check_lights(lights)?;
-        draws.iter().try_for_each(|draw| draw.pose.validate())?;
+        draws.iter().try_for_each(check_section)?;
         let Some(shadows) = &mut self.shadows else { return Ok(()) };
         shadows.begin();
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
@@ -277,7 +277,7 @@ impl HairRenderer {
             }
             let is_shadowed = lit.is_some_and(|(_, has_any)| has_any);
             for draw in &draws {
-                self.shade.pass(list, &view, draw.strands, is_shadowed)?;
+                self.shade.pass(list, &view, draw, is_shadowed)?;
             }
             self.order.draw(list, &view, &seen.targets, &draws)?;
         }
@@ -300,8 +300,7 @@ impl HairRenderer {
                 return Err(DrawError::Size { view, renderer });
             }
         }
-        draws.iter().try_for_each(|draw| draw.pose.validate())?;
-        Ok(())
+        draws.iter().try_for_each(check_section)
     }
 
     /// Reads back the counters of a view, as they are at this place of the list; [`Counters::from_bytes`] decodes them.

@@ -104,7 +104,7 @@ impl Segments {
             Pipeline::Compute(kernel) => {
                 for draw in draws {
                     let bindings = bound.get(key(draw), || kernel.bind(&all(draw)))?;
-                    let segments = draw.strands.buffers.shape.segments();
+                    let segments = draw.segments();
                     list.compute(kernel, &bindings, Grid::for_threads(segments, GROUP));
                 }
             }
@@ -112,7 +112,7 @@ impl Segments {
                 let mut pass = RasterPass::new(pipeline.label()).color(targets.color, Load::Keep);
                 for draw in draws {
                     let bindings = bound.get(key(draw), || pipeline.bind(&all(draw)))?;
-                    let segments = draw.strands.buffers.shape.segments();
+                    let segments = draw.segments();
                     pass = pass.draw(Draw::new(pipeline, &bindings, 6 * segments, 1));
                 }
                 list.raster(pass);

@@ -8,7 +8,7 @@ use tressfx_core::shader::{Kernel, Specialization};
 
 use crate::bound::Bound;
 use crate::shaders::{GROUP, SHARED, compute};
-use crate::strands::ShadedStrands;
+use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
 #[derive(Debug)]
@@ -41,9 +41,10 @@ impl Shade {
         &mut self,
         list: &mut PassList,
         view: &BoundView,
-        strands: &ShadedStrands,
+        draw: &SectionDraw,
         is_shadowed: bool,
     ) -> Result<()> {
+        let strands = draw.strands;
         let resources = [
             ("view", view.uniform),
             ("section", strands.uniform.into()),
@@ -57,7 +58,7 @@ impl Shade {
             _ => (&self.open, &resources[..5]),
         };
         let bindings = self.bound.get((view.index, strands.colors, is_shadowed), || kernel.bind(used))?;
-        list.compute(kernel, &bindings, Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP));
+        list.compute(kernel, &bindings, Grid::for_threads(draw.vertices(), GROUP));
         Ok(())
     }
 }

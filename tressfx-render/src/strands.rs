@@ -9,8 +9,9 @@ use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
+use crate::lod::{Bends, Lod};
 use crate::material::Material;
-use crate::uniforms::SectionUniform;
+use crate::uniforms::{LodUniform, SectionUniform};
 use crate::views::BoundView;
 
 /// How many segments a prediction samples.
@@ -35,6 +36,8 @@ pub struct StrandInfo {
     /// An even sample of the segments of the rest pose: both ends, and the shares of the full width there. From it the
     /// number of fragments is predicted.
     pub sample: Vec<([Vec3; 2], [f32; 2])>,
+    /// How far strands bend away from fewer vertices.
+    pub bends: Bends,
 }
 
 impl StrandInfo {
@@ -49,7 +52,12 @@ impl StrandInfo {
         };
         let count = segments.min(MAX_SAMPLES);
         let sample = (0..count).map(|i| segment(sampled(i, count, segments))).collect();
-        Self { metres_per_unit: strands.metres_per_unit, fitting_radius: fitting_radius(strands), sample }
+        Self {
+            metres_per_unit: strands.metres_per_unit,
+            fitting_radius: fitting_radius(strands),
+            sample,
+            bends: Bends::of(strands),
+        }
     }
 
     /// Radius of a fibre in the unit of the positions.
@@ -163,17 +171,41 @@ pub struct SectionDraw<'a> {
     pub material: &'a Material,
     /// From the positions in its buffers to the world: `HairSim::pose`, or what takes [`StrandBuffers::center`] to its place.
     pub pose: Pose,
+    /// What of it is drawn.
+    pub lod: Lod,
 }
 
 impl<'a> SectionDraw<'a> {
     /// A section in its place.
     pub fn new(strands: &'a ShadedStrands, material: &'a Material, pose: Pose) -> Self {
-        Self { strands, material, pose }
+        Self { strands, material, pose, lod: Lod::FULL }
+    }
+
+    /// The same with less detail.
+    #[must_use]
+    pub fn lod(self, lod: Lod) -> Self {
+        Self { lod, ..self }
+    }
+
+    pub(crate) fn lod_uniform(&self) -> LodUniform {
+        self.lod.uniform(self.strands.buffers.shape)
+    }
+
+    /// Vertices that are shaded and drawn.
+    pub fn vertices(&self) -> u32 {
+        let lod = self.lod_uniform();
+        lod.strands * lod.vertices
+    }
+
+    /// Segments that are drawn.
+    pub fn segments(&self) -> u32 {
+        let lod = self.lod_uniform();
+        lod.strands * (lod.vertices - 1)
     }
 
     /// What the shaders are given.
     pub fn uniform(&self) -> SectionUniform {
-        SectionUniform::new(self.strands.buffers.shape, &self.strands.info, self.material, &self.pose)
+        SectionUniform::new(self.strands.buffers.shape, &self.strands.info, self.material, &self.pose, &self.lod)
     }
 
     pub(crate) fn is_empty(&self) -> bool {

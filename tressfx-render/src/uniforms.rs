@@ -6,6 +6,7 @@ use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::view::{Pose, View};
 
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
+use crate::lod::Lod;
 use crate::material::Material;
 pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
@@ -77,6 +78,20 @@ gpu_struct! {
 }
 
 gpu_struct! {
+    /// What of a section is drawn.
+    pub struct LodUniform {
+        /// Strands.
+        pub strands: u32,
+        /// Vertices of each of them.
+        pub vertices: u32,
+        /// Steps from a drawn vertex to the next one.
+        pub step: u32,
+        /// Share of its width that the last strand has.
+        pub fade: f32,
+    }
+}
+
+gpu_struct! {
     /// Counts and material of a section.
     pub struct SectionUniform {
         /// Where the section is moved to, columns.
@@ -91,8 +106,10 @@ gpu_struct! {
         pub guides: u32,
         /// Vertices of a strand.
         pub vertices: u32,
-        /// Radius of a fibre in the unit of the positions.
+        /// Radius of a fibre in the unit of the positions, wider where a strand stands for several.
         pub fibre_radius: f32,
+        /// What is drawn.
+        pub lod: LodUniform,
         /// Share of the width that is left at the tip.
         pub tip_width: f32,
         /// Strength of the diffuse term.
@@ -115,8 +132,8 @@ gpu_struct! {
         pub root_extent: f32,
         /// The share of light that a fibre takes on its way to others.
         pub shadow_alpha: f32,
-        /// Nothing.
-        pub unused: u32,
+        /// Strands that are counted for shadows at most.
+        pub shadow_strands: u32,
         /// Nothing.
         pub unused_too: [u32; 2],
     }
@@ -185,9 +202,11 @@ impl ViewUniform {
 
 impl SectionUniform {
     /// What the shaders are given for a section.
-    pub fn new(shape: StrandShape, info: &StrandInfo, material: &Material, pose: &Pose) -> Self {
+    pub fn new(shape: StrandShape, info: &StrandInfo, material: &Material, pose: &Pose, lod: &Lod) -> Self {
         let Material { base_color, tip_color, primary, secondary, .. } = *material;
         let matrix: Mat4 = pose.matrix();
+        // The mean of several strands differs less from that of others.
+        let apart = lod.widening(shape).sqrt();
         Self {
             pose: matrix.to_cols_array_2d(),
             base: with(base_color, material.opacity),
@@ -195,19 +214,20 @@ impl SectionUniform {
             strands: shape.strands(),
             guides: shape.guides,
             vertices: shape.vertices,
-            fibre_radius: info.radius(material),
+            fibre_radius: info.radius(material) * lod.widening(shape),
+            lod: lod.uniform(shape),
             tip_width: material.tip_width,
             diffuse: material.diffuse,
-            variation: material.variation,
+            variation: material.variation / apart,
             self_shadow: material.self_shadow,
             primary: [primary.strength, primary.exponent],
             secondary: [secondary.strength, secondary.exponent],
             tilt: material.tilt.to_radians(),
-            tilt_variation: material.tilt_variation,
+            tilt_variation: material.tilt_variation / apart,
             root_shade: material.root_shade,
             root_extent: material.root_extent,
             shadow_alpha: material.shadow_alpha,
-            unused: 0,
+            shadow_strands: lod.shadow_strands(shape),
             unused_too: [0; 2],
         }
     }

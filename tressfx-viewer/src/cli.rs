@@ -10,6 +10,7 @@ use tressfx_core::shader::Language;
 use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
+use crate::lod::Lod;
 use crate::oit::Oit;
 use crate::shadows::Shadows;
 
@@ -156,6 +157,8 @@ pub(crate) struct Render {
     pub(crate) oit: Oit,
     #[command(flatten)]
     pub(crate) shadows: Shadows,
+    #[command(flatten)]
+    pub(crate) lod: Lod,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,

@@ -11,6 +11,7 @@ mod convert;
 mod groom;
 mod hair_output;
 mod info;
+mod lod;
 mod motion;
 mod oit;
 mod params;

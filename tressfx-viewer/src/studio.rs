@@ -6,8 +6,8 @@ use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HAIR_FORMAT, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets,
-    Technique, ViewDraw,
+    Counters, HAIR_FORMAT, HairRenderer, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo,
+    Targets, Technique, ViewDraw,
 };
 use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
@@ -33,6 +33,7 @@ pub(crate) struct Studio {
     pub(crate) opaque: Vec<Mesh>,
     pub(crate) sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
+    lod: Option<LodDesc>,
 }
 
 impl Studio {
@@ -56,12 +57,13 @@ impl Studio {
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         let desc = desc.shadows(args.shadows.desc());
         let mut renderer = HairRenderer::new(backend, &desc)?;
-        renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose()))?;
+        let lod = args.lod.desc();
+        renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth(), desc.shadows.is_some())?;
         let (lights, drawn) = (studio_lights(), RenderStats::default());
         let light_depth = LightDepth::new(backend, &lights, &opaque)?;
         backend.run(&uploads)?;
-        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer })
+        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer, lod })
     }
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
@@ -73,7 +75,8 @@ impl Studio {
     /// Records the shadows and what is opaque. Gives the lights with what they see of it.
     pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
         let lights = self.light_depth.draw(list, &self.lights, &self.meshes, head)?;
-        self.renderer.cast(list, &lights, &draws(&self.sections, pose))?;
+        let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
+        self.renderer.cast(list, &lights, &sections)?;
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
         let shadows = self.renderer.shadow_bindings();
@@ -90,8 +93,9 @@ impl Studio {
             // Pixels without hair keep what they have: no coverage.
             list.raster(RasterPass::new("studio.clear_hair").color(hair, Load::Clear([0.0; 4])));
         }
-        let view = ViewDraw::new(view, lights, *targets);
-        renderer.draw(list, &[view], &draws(&self.sections, pose))?;
+        let sections = draws(&self.sections, pose, view, self.lod.as_ref());
+        self.drawn.vertices = sections.iter().map(|section| u64::from(section.vertices())).sum();
+        renderer.draw(list, &[ViewDraw::new(view, lights, *targets)], &sections)?;
         Ok(self.renderer.request_counters(list, 0))
     }
 
@@ -119,6 +123,7 @@ impl Studio {
             fragments: u64::from(counters.fragments),
             dropped: u64::from(counters.dropped),
             merged: u64::from(counters.merged),
+            vertices: self.drawn.vertices,
             pixels_with_hair: u64::from(counters.pixels_with_hair),
             ..RenderStats::default()
         };
@@ -139,6 +144,16 @@ impl Studio {
     }
 }
 
-fn draws(sections: &[(ShadedStrands, Material)], pose: Pose) -> Vec<SectionDraw<'_>> {
-    sections.iter().map(|(strands, material)| SectionDraw::new(strands, material, pose)).collect()
+/// The sections with the detail that the view needs; all of it where no `lod` is given.
+fn draws<'a>(
+    sections: &'a [(ShadedStrands, Material)],
+    pose: Pose,
+    view: &View,
+    lod: Option<&LodDesc>,
+) -> Vec<SectionDraw<'a>> {
+    let draw = |(strands, material)| {
+        let draw = SectionDraw::new(strands, material, pose);
+        lod.map_or(draw, |lod| draw.lod(lod.choose(view, &draw)))
+    };
+    sections.iter().map(|(strands, material)| (strands, material)).map(draw).collect()
 }

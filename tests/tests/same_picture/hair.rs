@@ -79,5 +79,6 @@ fn grown(name: &str, material: Material) -> Groom {
         info,
         material,
         pose: tressfx_core::view::Pose::IDENTITY,
+        lod: tressfx_render::Lod::FULL,
     }
 }

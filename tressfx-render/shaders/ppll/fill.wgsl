@@ -44,9 +44,9 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     let i = thread_index(group, groups, lane);
     var ribbon: Ribbon;
     var paint: Paint;
-    if i < section.strands * (section.vertices - 1u) {
-        ribbon = ribbon_of(i % section.strands, i / section.strands);
-        paint = paint_of(i % section.strands, i / section.strands);
+    if i < section.lod.strands * (section.lod.vertices - 1u) {
+        ribbon = ribbon_of(i % section.lod.strands, i / section.lod.strands);
+        paint = paint_of(i % section.lod.strands, i / section.lod.strands);
     }
     var counted: Sink;
     walk(ribbon, paint, &counted);

@@ -28,14 +28,14 @@ fn note_box(frame: u32, low: vec3<f32>, high: vec3<f32>) {
 fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                  @builtin(local_invocation_index) lane: u32) {
     let strand = thread_index(group, groups, lane);
-    if strand >= min(section.strands, shadow.samples) {
+    if strand >= min(section.shadow_strands, shadow.samples) {
         return;
     }
     for (var frame = shadow.first; frame < shadow.end; frame++) {
         var low = vec3(3e38);
         var high = vec3(-3e38);
-        for (var vertex = 0u; vertex < section.vertices; vertex++) {
-            let local = positions[vertex * section.strands + strand].xyz;
+        for (var vertex = 0u; vertex < section.lod.vertices; vertex++) {
+            let local = positions[min(vertex * section.lod.step, section.vertices - 1u) * section.strands + strand].xyz;
             if is_sound(local) {
                 let at = in_frame(shadow.frames[frame], (section.pose * vec4(local, 1.0)).xyz);
                 low = min(low, at);

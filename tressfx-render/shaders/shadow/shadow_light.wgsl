@@ -3,7 +3,7 @@
 import package::grid::{GROUP, thread_index};
 import package::hair_shadow::{hair_light, hair_sky};
 import package::ribbon::is_sound;
-import package::section::SectionUniform;
+import package::section::{SectionUniform, drawn_vertex};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
@@ -13,10 +13,12 @@ import package::section::SectionUniform;
 @compute @workgroup_size(GROUP)
 fn shadow_light(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                 @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    if i >= section.strands * section.vertices {
+    let thread = thread_index(group, groups, lane);
+    if thread >= section.lod.strands * section.lod.vertices {
         return;
     }
+    let drawn = drawn_vertex(section.lod, thread, section.vertices);
+    let i = drawn.y * section.strands + drawn.x;
     let local = positions[i].xyz;
     let point = (section.pose * vec4(select(vec3(0.0), local, is_sound(local)), 1.0)).xyz;
     let open = hair_sky(point);

@@ -2,7 +2,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::ribbon::{is_sound, on_screen, scale_at};
-import package::section::SectionUniform;
+import package::section::{SectionUniform, drawn_vertex};
 import package::view::LensUniform;
 
 struct OpaqueUniform {
@@ -64,8 +64,13 @@ fn share_at(point: vec3<f32>) -> f32 {
 @compute @workgroup_size(GROUP)
 fn shadow_opaque(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                  @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    if i >= section.strands * section.vertices || !is_sound(positions[i].xyz) {
+    let thread = thread_index(group, groups, lane);
+    if thread >= section.lod.strands * section.lod.vertices {
+        return;
+    }
+    let drawn = drawn_vertex(section.lod, thread, section.vertices);
+    let i = drawn.y * section.strands + drawn.x;
+    if !is_sound(positions[i].xyz) {
         return;
     }
     let share = share_at((section.pose * vec4(positions[i].xyz, 1.0)).xyz);

@@ -5,7 +5,7 @@ import package::frames::{SKY, ShadowGrid, ShadowFrameUniform, cell_at, in_frame,
 import package::grid::{GROUP, thread_index};
 import package::grids::{grid_of, shadow};
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, hash};
+import package::section::{SectionUniform, hash, strands_of};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
@@ -82,19 +82,20 @@ fn add_skin(grid: ShadowGrid, frame: ShadowFrameUniform, root: vec3<f32>, growth
 fn shadow_splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                 @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
-    let samples = min(section.strands, shadow.samples);
-    if i >= samples * (section.vertices - 1u) {
+    let samples = min(section.shadow_strands, shadow.samples);
+    if i >= samples * (section.lod.vertices - 1u) {
         return;
     }
     let strand = i % samples;
-    let vertex = i / samples;
+    let vertex = i / samples * section.lod.step;
+    let next = min(vertex + section.lod.step, section.vertices - 1u);
     let start = posed(strand, vertex);
-    let end = posed(strand, vertex + 1u);
+    let end = posed(strand, next);
     if start.w * end.w == 0.0 {
         return;
     }
-    let width = 0.5 * (width_at(strand, vertex) + width_at(strand, vertex + 1u));
-    let taken = section.shadow_alpha * width * f32(section.strands) / f32(samples);
+    let width = 0.5 * (width_at(strand, vertex) + width_at(strand, next));
+    let taken = section.shadow_alpha * width * strands_of(section.lod) / f32(samples);
     for (var index = shadow.first; index < shadow.end; index++) {
         let frame = shadow.frames[index];
         let grid = grid_of(index);

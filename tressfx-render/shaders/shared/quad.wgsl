@@ -22,13 +22,13 @@ struct Corner {
 // Six vertices a segment, two triangles.
 fn corner_of(vertex: u32) -> Corner {
     let segment = vertex / 6u;
-    let ribbon = ribbon_of(segment % section.strands, segment / section.strands);
+    let ribbon = ribbon_of(segment % section.lod.strands, segment / section.lod.strands);
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         // All corners in one point: nothing is drawn.
         return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     }
-    let paint = paint_of(segment % section.strands, segment / section.strands);
+    let paint = paint_of(segment % section.lod.strands, segment / section.lod.strands);
     let direction = vec2(line.normal.y, -line.normal.x);
     let extent = max(ribbon.half_width.x, ribbon.half_width.y) + line.reach.x + MARGIN;
     let beyond = overshoot(ribbon, extent) + MARGIN;

@@ -1,5 +1,15 @@
 // What every kernel knows of the section that it draws: its counts and its material.
 
+// What of a section is drawn: an even sample of its strands, and of those each vertex `step`, the root and the tip.
+struct LodUniform {
+    // How many, of each strand how many vertices.
+    strands: u32,
+    vertices: u32,
+    step: u32,
+    // Share of its width that the last strand has.
+    fade: f32,
+}
+
 struct SectionUniform {
     pose: mat4x4<f32>,
     // Colour and opacity at the root and at the tip.
@@ -8,8 +18,9 @@ struct SectionUniform {
     strands: u32,
     guides: u32,
     vertices: u32,
-    // In the unit of the positions.
+    // In the unit of the positions; wider where a strand stands for several.
     fibre_radius: f32,
+    lod: LodUniform,
     tip_width: f32,
     diffuse: f32,
     variation: f32,
@@ -24,8 +35,24 @@ struct SectionUniform {
     root_extent: f32,
     // The share of light that a fibre takes on its way to others.
     shadow_alpha: f32,
-    unused: u32,
+    // Strands that are counted for shadows at most.
+    shadow_strands: u32,
     unused_too: vec2<u32>,
+}
+
+// Strand and vertex of thread `i`, of those that draw a section; `vertices` are those of the whole strand.
+fn drawn_vertex(lod: LodUniform, i: u32, vertices: u32) -> vec2<u32> {
+    return vec2(i % lod.strands, min(i / lod.strands * lod.step, vertices - 1u));
+}
+
+// How many strands have the width of all.
+fn strands_of(lod: LodUniform) -> f32 {
+    return f32(lod.strands - 1u) + lod.fade;
+}
+
+// Width of a strand as a share of what it has among others.
+fn faded(lod: LodUniform, strand: u32) -> f32 {
+    return select(1.0, lod.fade, strand + 1u == lod.strands);
 }
 
 // A number in [0, 1) that looks random, the same on every device: PCG-RXS-M-XS.

@@ -1,29 +1,35 @@
-// The strands of a section before the lens of a view: what every technique that walks over them is given.
+// The strands of a section before the lens of a view: what every technique that walks over them is given. Strands and vertices are numbered as
+// they are drawn: see `lod`.
 
 import package::joint::{ROUND, rise_along, tilt_of};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, on_screen, project, scale_at};
 import package::screen::view;
-import package::section::SectionUniform;
+import package::section::{SectionUniform, faded};
 
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> colors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> thickness: array<f32>;
 
+// The vertex of the buffers.
+fn full_vertex(vertex: u32) -> u32 {
+    return min(vertex * section.lod.step, section.vertices - 1u);
+}
+
 fn is_sound_at(strand: u32, vertex: u32) -> bool {
-    return is_sound(positions[vertex * section.strands + strand].xyz);
+    return is_sound(positions[full_vertex(vertex) * section.strands + strand].xyz);
 }
 
 // A vertex in the space of the eye.
 fn point_at(strand: u32, vertex: u32) -> vec3<f32> {
-    let world = section.pose * vec4(positions[vertex * section.strands + strand].xyz, 1.0);
+    let world = section.pose * vec4(positions[full_vertex(vertex) * section.strands + strand].xyz, 1.0);
     return (view.lens.to_eye * world).xyz;
 }
 
 fn radius_at(strand: u32, vertex: u32) -> f32 {
-    let width = thickness[vertex * section.guides + strand % section.guides];
-    return section.fibre_radius * mix(section.tip_width, 1.0, width);
+    let width = thickness[full_vertex(vertex) * section.guides + strand % section.guides];
+    return section.fibre_radius * faded(section.lod, strand) * mix(section.tip_width, 1.0, width);
 }
 
 fn end_at(strand: u32, vertex: u32) -> End {
@@ -51,7 +57,7 @@ fn tilt_between(bend: Bend) -> f32 {
 }
 
 fn shaded_at(strand: u32, vertex: u32) -> vec4<f32> {
-    let color = colors[vertex * section.strands + strand];
+    let color = colors[full_vertex(vertex) * section.strands + strand];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
 }
 
@@ -66,7 +72,7 @@ fn paint_between(bend: Bend, strand: u32, vertex: u32, beside: vec2<u32>) -> vec
 
 // The vertices before and after one; where no segment leads to it or from it, the vertex itself.
 fn neighbours_of(strand: u32, vertex: u32) -> vec2<u32> {
-    let last = section.vertices - 1u;
+    let last = section.lod.vertices - 1u;
     let near = vec2(max(vertex, 1u) - 1u, min(vertex + 1u, last));
     return select(vec2(vertex), near, vec2(is_sound_at(strand, near.x), is_sound_at(strand, near.y)));
 }

@@ -29,9 +29,9 @@ fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
 
 // Visits those of a segment of the section, if there are so many.
 fn walk_segment(segment: u32, sink: ptr<function, Sink>) {
-    if segment < section.strands * (section.vertices - 1u) {
-        let strand = segment % section.strands;
-        let vertex = segment / section.strands;
+    if segment < section.lod.strands * (section.lod.vertices - 1u) {
+        let strand = segment % section.lod.strands;
+        let vertex = segment / section.lod.strands;
         walk(ribbon_of(strand, vertex), paint_of(strand, vertex), sink);
     }
 }

@@ -3,9 +3,9 @@
 
 import package::grid::{GROUP, thread_index};
 import package::joint::ROUND;
-import package::ribbon::{End, is_sound, on_screen, scale_of};
+import package::ribbon::{End, on_screen, scale_of};
 import package::screen::view;
-import package::strands::{bend_at, end_at, neighbours_of, paint_between, positions, section, tilt_between};
+import package::strands::{bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, tilt_between};
 import package::tile::TILE;
 import package::tiles::{SharedTileInfo, nearness_at, tile_columns};
 
@@ -56,15 +56,17 @@ fn note_nearest(point: vec4<f32>) {
 fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
-    if i >= section.strands * section.vertices {
+    if i >= section.lod.strands * section.lod.vertices {
         return;
     }
-    let sound = is_sound(positions[i].xyz);
-    let point = select(NOWHERE, point_of(end_at(i % section.strands, i / section.strands)), sound);
+    let strand = i % section.lod.strands;
+    let vertex = i / section.lod.strands;
+    let sound = is_sound_at(strand, vertex);
+    let point = select(NOWHERE, point_of(end_at(strand, vertex)), sound);
     points[i] = point;
-    paints[i] = paint_of_vertex(i % section.strands, i / section.strands);
-    let step = max(section.strands / SAMPLES, 1u);
-    if sound && (i % section.strands) % step == 0u {
+    paints[i] = paint_of_vertex(strand, vertex);
+    let step = max(section.lod.strands / SAMPLES, 1u);
+    if sound && strand % step == 0u {
         note_nearest(point);
     }
 }

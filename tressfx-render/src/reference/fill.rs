@@ -43,8 +43,8 @@ pub(super) fn fill_projected(
     scene: &dyn Fn([u32; 2]) -> f32,
     sink: &mut dyn FnMut(Fragment),
 ) {
-    for vertex in 0..strands.uniform.vertices - 1 {
-        for strand in 0..strands.uniform.strands {
+    for vertex in 0..strands.uniform.lod.vertices - 1 {
+        for strand in 0..strands.uniform.lod.strands {
             if let Some(ribbon) = Ribbon::new(projection, strands, colors, strand, vertex) {
                 ribbon.walk(projection, scene, sink);
             }

@@ -49,7 +49,7 @@ pub fn resolved_with_tail(
     k: usize,
     tail: Tail,
 ) -> Vec<DVec4> {
-    let segments = |of: &Strands| f64::from(of.uniform.strands * (of.uniform.vertices - 1));
+    let segments = |of: &Strands| f64::from(of.uniform.lod.strands * (of.uniform.lod.vertices - 1));
     let sum: DVec3 = strands.iter().map(|of| xyz(&of.uniform.base) * segments(of)).sum();
     let unlit = sum / strands.iter().map(segments).sum::<f64>();
     let mut lists = lists(view, lights, strands, scene, 1);

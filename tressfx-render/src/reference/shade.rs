@@ -8,11 +8,11 @@ use super::projection::Projection;
 use super::{Arriving, Strands, matrix, pair, xyz};
 use crate::lights::{Light, LightPlace, Lights};
 
-/// Colour and opacity of a strand vertex.
+/// Colour and opacity of a vertex of the buffers.
 pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, vertex: u32) -> DVec4 {
     let of = &strands.uniform;
     let guide = strand % of.guides;
-    let index = strands.index(strand, vertex);
+    let index = (vertex * of.strands + strand) as usize;
     let along = f64::from(vertex) / f64::from(of.vertices - 1);
     let paint = DVec4::from_array(of.base.map(f64::from)).lerp(DVec4::from_array(of.tip.map(f64::from)), along);
     let fibre = Fibre {

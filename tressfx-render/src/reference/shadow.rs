@@ -73,7 +73,7 @@ pub(super) fn shrinks_by(frame: &ShadowFrameUniform, at: DVec3) -> f64 {
 
 /// Strands of a section that are counted.
 pub(super) fn samples(shadow: &ShadowUniform, strands: &Strands) -> u32 {
-    strands.uniform.strands.min(shadow.samples)
+    strands.uniform.shadow_strands.min(shadow.samples)
 }
 
 /// What a frame of shadows holds in f64.

@@ -9,8 +9,8 @@ use crate::uniforms::ShadowUniform;
 /// The box of the hair in a frame; none where there is none.
 pub fn shadow_bounds(shadow: &ShadowUniform, index: usize, sections: &[Strands]) -> Option<[DVec3; 2]> {
     let vertices = sections.iter().flat_map(|strands| {
-        let pairs =
-            (0..samples(shadow, strands)).flat_map(|strand| (0..strands.uniform.vertices).map(move |v| (strand, v)));
+        let pairs = (0..samples(shadow, strands))
+            .flat_map(|strand| (0..strands.uniform.lod.vertices).map(move |v| (strand, v)));
         let sound = pairs.filter(|&(strand, vertex)| strands.is_sound(strand, vertex));
         sound.map(|(strand, vertex)| in_frame(&shadow.frames[index], strands.posed(strands.index(strand, vertex))))
     });

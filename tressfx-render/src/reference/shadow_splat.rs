@@ -17,7 +17,7 @@ pub fn shadow_splat(shadow: &ShadowUniform, index: usize, bounds: [DVec3; 2], se
     for strands in sections {
         let counted = samples(shadow, strands);
         for strand in 0..counted {
-            for vertex in 0..strands.uniform.vertices - 1 {
+            for vertex in 0..strands.uniform.lod.vertices - 1 {
                 if strands.is_sound(strand, vertex) && strands.is_sound(strand, vertex + 1) {
                     segment(&mut made, shadow, strands, strand, vertex);
                 }
@@ -36,8 +36,8 @@ fn segment(made: &mut ShadowCells, shadow: &ShadowUniform, strands: &Strands, st
     let frame = &shadow.frames[made.index];
     let of = &strands.uniform;
     let ends = [vertex, vertex + 1].map(|vertex| in_frame(frame, strands.posed(strands.index(strand, vertex))));
-    let width = strands.radius(strand, vertex) + strands.radius(strand, vertex + 1);
-    let stands_for = f64::from(of.strands) / f64::from(samples(shadow, strands));
+    let width = strands.full_radius(strand, vertex) + strands.full_radius(strand, vertex + 1);
+    let stands_for = (f64::from(of.lod.strands - 1) + f64::from(of.lod.fade)) / f64::from(samples(shadow, strands));
     let taken = f64::from(of.shadow_alpha) * width * stands_for / shrinks_by(frame, 0.5 * (ends[0] + ends[1]));
     let way = ends[1] - ends[0];
     let covered = if made.is_sky() { FRAC_PI_4 * way.length() } else { way.truncate().length() };

@@ -58,7 +58,7 @@ pub(super) struct Kernels {
 
 /// Strands of a section that are counted.
 fn samples(draw: &SectionDraw, desc: &ShadowDesc) -> u32 {
-    draw.strands.buffers.shape.strands().min(desc.samples)
+    draw.lod.shadow_strands(draw.strands.buffers.shape).min(desc.samples)
 }
 
 impl Kernels {
@@ -128,7 +128,7 @@ impl Kernels {
             ("thickness", strands.buffers.thickness.into()),
             ("cells", memory.cells.into()),
         ];
-        let segments = samples(draw, desc) * (strands.buffers.shape.vertices - 1);
+        let segments = samples(draw, desc) * (draw.lod_uniform().vertices - 1);
         let grid = Grid::for_threads(segments, GROUP);
         self.splat.record(list, (set, Some(strands.arriving), None), grid, &resources)
     }
@@ -155,7 +155,7 @@ impl Kernels {
             ("arriving", strands.arriving.into()),
         ];
         let resources = [&memory.bindings(set)[..], &own].concat();
-        let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
+        let grid = Grid::for_threads(draw.vertices(), GROUP);
         self.light.record(list, (set, Some(strands.arriving), None), grid, &resources)
     }
 
@@ -175,7 +175,7 @@ impl Kernels {
             ("positions", strands.buffers.positions.into()),
             ("arriving", strands.arriving.into()),
         ];
-        let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
+        let grid = Grid::for_threads(draw.vertices(), GROUP);
         self.opaque.record(list, (scene.0, Some(strands.arriving), Some(depth)), grid, &resources)
     }
 }

@@ -145,7 +145,7 @@ impl Kernels {
         memory: &Memory,
         first: u32,
     ) -> Result<()> {
-        let (strands, vertices) = (draw.strands, u64::from(draw.strands.buffers.shape.strand_vertices()));
+        let (strands, vertices) = (draw.strands, u64::from(draw.vertices()));
         let first_vertex = u64::from(first);
         let resources = [
             ("view", view.uniform),
@@ -157,7 +157,7 @@ impl Kernels {
             ("paints", memory.vertices.paints.range(16 * first_vertex, 16 * vertices)),
             ("infos", memory.screen.infos.into()),
         ];
-        let grid = Grid::for_threads(strands.buffers.shape.strand_vertices(), GROUP);
+        let grid = Grid::for_threads(draw.vertices(), GROUP);
         self.points.record(list, (view.index, (strands.colors, first)), Groups::Grid(grid), &resources)
     }
 

@@ -65,12 +65,12 @@ gpu_struct! {
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
         pub alloc_groups: [u32; 4],
-        /// Of each section: its first segment, its first vertex, its strands, nothing.
+        /// Of each section: its first segment, its first vertex, its strands that are drawn, nothing.
         pub layouts: [[u32; 4]; MAX_SECTIONS],
     }
 }
 
-/// Vertices that sections take, with what is left free between them.
+/// Vertices that sections take at most, with all their detail, and what is left free between them.
 pub(crate) fn vertices(draws: &[SectionDraw]) -> u64 {
     let of = |draw: &SectionDraw| draw.strands.buffers.shape.strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
     draws.iter().map(|draw| u64::from(of(draw))).sum()
@@ -101,11 +101,10 @@ impl Layout {
         let mut sections = [[0; 4]; MAX_SECTIONS];
         let mut first_vertices = Vec::new();
         for (section, draw) in sections.iter_mut().zip(draws) {
-            let shape = &draw.strands.buffers.shape;
-            *section = [segment, vertex, shape.strands(), 0];
+            *section = [segment, vertex, draw.lod_uniform().strands, 0];
             first_vertices.push(vertex);
-            segment += shape.segments();
-            vertex += shape.strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
+            segment += draw.segments();
+            vertex += draw.vertices().next_multiple_of(VERTEX_ALIGNMENT);
         }
         Ok(Self { segments: segment, vertices, first_vertices, sections })
     }
