@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Extent {
     Quick,
     Full,
+    /// Shadows in place of techniques, at rest and shaken.
+    Light,
 }
 
 impl Extent {
@@ -17,6 +19,7 @@ impl Extent {
         match self {
             Self::Quick => "quick",
             Self::Full => "full",
+            Self::Light => "light",
         }
     }
 
@@ -24,6 +27,7 @@ impl Extent {
         match self {
             Self::Quick => Setting { size: [320, 180], samples: 64, frames: 1 },
             Self::Full => Setting { size: [1280, 720], samples: 256, frames: 60 },
+            Self::Light => Setting { size: [320, 180], samples: 256, frames: 30 },
         }
     }
 }
@@ -64,7 +68,7 @@ pub(crate) struct Row {
     pub(crate) passes: Vec<PassTime>,
     pub(crate) fragments: u64,
     pub(crate) dropped: u64,
-    /// Of the buffers in which the technique keeps fragments and pixels.
+    /// Of the buffers in which the technique keeps fragments and pixels, or in which shadows are made.
     pub(crate) bytes: u64,
 }
 
@@ -116,6 +120,8 @@ pub(crate) struct Report {
     quick: Option<Run>,
     #[serde(skip_serializing_if = "Option::is_none")]
     full: Option<Run>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    light: Option<Run>,
 }
 
 impl Report {
@@ -137,6 +143,7 @@ impl Report {
         match extent {
             Extent::Quick => &mut self.quick,
             Extent::Full => &mut self.full,
+            Extent::Light => &mut self.light,
         }
     }
 }

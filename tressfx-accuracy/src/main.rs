@@ -12,7 +12,7 @@ mod plot;
 mod program;
 mod scene;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Parser, ValueEnum};
@@ -31,6 +31,9 @@ struct Args {
     /// Fewer scenes and settings, in small pictures
     #[arg(long)]
     quick: bool,
+    /// Judge shadows in place of techniques, at rest and in motion, by light that is traced
+    #[arg(long, conflicts_with = "quick")]
+    light: bool,
     /// What runs the passes
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
     device: Device,
@@ -69,9 +72,18 @@ impl Device {
     }
 }
 
+/// The plots of error against time; shadows have none, since their time is a part of the frame's.
+fn plot(run: &Run, extent: Extent, docs: &Path) -> Result<()> {
+    if extent == Extent::Light { Ok(()) } else { plot::write(run, docs) }
+}
+
 fn main() -> Result<()> {
     let args = Args::parse();
-    let extent = if args.quick { Extent::Quick } else { Extent::Full };
+    let extent = match (args.quick, args.light) {
+        (_, true) => Extent::Light,
+        (true, _) => Extent::Quick,
+        _ => Extent::Full,
+    };
     let path = args.docs.join("accuracy.json");
     let mut report = Report::read(&path)?;
     let stored = report.run(extent).take();
@@ -80,17 +92,17 @@ fn main() -> Result<()> {
     }
     if args.pages {
         let run = stored.with_context(|| format!("{}: it holds no {} run", path.display(), extent.name()))?;
-        plot::write(&run, &args.docs)?;
+        plot(&run, extent, &args.docs)?;
         return page::write(&run, extent, &args.docs);
     }
-    let measure = Measure::new(Program::new(&args.program)?, &args.work, extent.setting(), args.fresh);
+    let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
     let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;
     let run = Run { setting: extent.setting(), rows, note: None };
     if let Some(stored) = stored.filter(|_| args.check) {
         return check::check(&stored, &run);
     }
     std::fs::create_dir_all(&args.docs).with_context(|| args.docs.display().to_string())?;
-    plot::write(&run, &args.docs)?;
+    plot(&run, extent, &args.docs)?;
     page::write(&run, extent, &args.docs)?;
     *report.run(extent) = Some(run);
     report.write(&path)?;

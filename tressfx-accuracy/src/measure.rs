@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::{Deserialize, Serialize};
 
-use crate::figures::{PassTime, Row, Setting};
+use crate::figures::{Extent, PassTime, Row, Setting};
 use crate::method::Method;
 use crate::program::{PassStats, Program, Stats};
 use crate::scene::Scene;
@@ -19,6 +19,8 @@ pub(crate) struct Measure {
     program: Program,
     work: PathBuf,
     setting: Setting,
+    /// What is judged: where it is light, the reference traces it, and bytes are those of shadows.
+    is_light: bool,
     fresh: bool,
 }
 
@@ -31,8 +33,9 @@ struct Kept {
 }
 
 impl Measure {
-    pub(crate) fn new(program: Program, work: &Path, setting: Setting, fresh: bool) -> Self {
-        Self { program, work: work.to_owned(), setting, fresh }
+    pub(crate) fn new(program: Program, work: &Path, extent: Extent, fresh: bool) -> Self {
+        let (setting, is_light) = (extent.setting(), extent == Extent::Light);
+        Self { program, work: work.to_owned(), setting, is_light, fresh }
     }
 
     /// Every method on every scene whose groom is there, on every backend.
@@ -48,7 +51,7 @@ impl Measure {
         for scene in there {
             bar.set_message(format!("{}, reference", scene.name));
             let groom = scene.groom.as_deref().unwrap_or_default();
-            let words = self.words(groom, &scene.camera(&self.program.bounds(groom)?));
+            let words = self.words(groom, scene)?;
             let folder = self.folder(scene)?;
             let reference = self.reference(&folder, &words, backends[0])?;
             for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
@@ -65,11 +68,12 @@ impl Measure {
     }
 
     /// What all pictures of a scene have in common.
-    fn words(&self, groom: &str, camera: &str) -> Vec<String> {
+    fn words(&self, groom: &str, scene: &Scene) -> Result<Vec<String>> {
         let Setting { size, frames, .. } = self.setting;
         let size = format!("{}x{}", size[0], size[1]);
-        let frames = frames.to_string();
-        [groom, "--camera", camera, "--size", &size, "--frames", &frames].map(str::to_owned).to_vec()
+        let camera = scene.camera(&self.program.bounds(groom)?);
+        let words = [groom, "--camera", &camera, "--size", &size].map(str::to_owned).to_vec();
+        Ok([words, scene.motion(frames)].concat())
     }
 
     fn folder(&self, scene: &Scene) -> Result<PathBuf> {
@@ -90,7 +94,8 @@ impl Measure {
         let part = folder.join("reference.part.png");
         // Techniques are judged by what they make of visibility: the colours are theirs.
         let samples = self.setting.samples.to_string();
-        let more = ["--reference", "--reference-light", "given", "--samples", &samples, "--backend", backend];
+        let light = if self.is_light { "traced" } else { "given" };
+        let more = ["--reference", "--reference-light", light, "--samples", &samples, "--backend", backend];
         self.program.render(&[words, &more.map(str::to_owned)].concat(), &part)?;
         fs::rename(&part, &picture).with_context(|| picture.display().to_string())?;
         fs::write(&drawn_with, typed).with_context(|| drawn_with.display().to_string())?;
@@ -124,7 +129,7 @@ impl Measure {
             passes: passes(&stats),
             fragments: stats.render.fragments,
             dropped: stats.render.dropped,
-            bytes: stats.render.oit_bytes,
+            bytes: if self.is_light { stats.render.shadow_bytes } else { stats.render.oit_bytes },
             backend: stats.backend,
             adapter: stats.adapter,
         };
@@ -150,7 +155,6 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
 
     use super::*;
-    use crate::figures::Extent;
     use crate::method::methods;
     use crate::scene::scenes;
 
@@ -169,7 +173,7 @@ render)
             "passes": [{"label": "hair.render.tile_bin", "median_ms": 1.0, "frames": 2},
                        {"label": "hair.render.fill", "median_ms": 5, "frames": 1},
                        {"label": "hair.sim.tressfx", "median_ms": 9, "frames": 2}],
-            "render": {"fragments": 7, "dropped": 1, "oit_bytes": 5}}' > "$2" ;;
+            "render": {"fragments": 7, "dropped": 1, "oit_bytes": 5, "shadow_bytes": 3}}' > "$2" ;;
         esac
         shift
     done ;;
@@ -194,7 +198,7 @@ esac
         /// Two methods on one scene, and how often a reference and a measurement were asked for.
         fn measure(&self, fresh: bool) -> (Result<Vec<Row>>, usize, usize) {
             let program = Program::new(&self.0.join("tressfx")).unwrap();
-            let measure = Measure::new(program, &self.0.join("work"), Extent::Quick.setting(), fresh);
+            let measure = Measure::new(program, &self.0.join("work"), Extent::Quick, fresh);
             let rows = measure.all(&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2], &["wgpu"]);
             let asked = fs::read_to_string(self.0.join("asked.txt")).unwrap();
             fs::remove_file(self.0.join("asked.txt")).unwrap();

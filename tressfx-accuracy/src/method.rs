@@ -39,8 +39,22 @@ pub(crate) struct Method {
     pub(crate) words: Vec<String>,
 }
 
+/// What makes the light of a picture, all with the blending that is nearest to the truth.
+const SHADOWS: [(&str, &[&str]); 4] = [
+    ("no-shadows", &["--no-shadows"]),
+    ("shadows-128", &["--shadow-texels", "128", "--shadow-layers", "32"]),
+    ("shadows-192", &[]),
+    ("shadows-256", &["--shadow-texels", "256", "--shadow-layers", "64"]),
+];
+
 /// All methods.
 pub(crate) fn methods(extent: Extent) -> Vec<Method> {
+    if extent == Extent::Light {
+        let words = |own: &[&str]| {
+            ["--oit", "tiles", "--places", "4"].iter().chain(own).map(|word| (*word).to_owned()).collect()
+        };
+        return SHADOWS.map(|(name, own)| Method { name: name.to_owned(), words: words(own) }).into();
+    }
     FAMILIES.iter().flat_map(|family| of_family(family, extent)).collect()
 }
 

@@ -61,6 +61,7 @@ pub(crate) struct RenderStats {
     pub(crate) fragments: u64,
     pub(crate) dropped: u64,
     pub(crate) oit_bytes: u64,
+    pub(crate) shadow_bytes: u64,
 }
 
 impl Program {

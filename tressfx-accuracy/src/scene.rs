@@ -16,6 +16,17 @@ const NEAR: Place = Place { name: "near", share: 0.38 };
 const MIDDLE: Place = Place { name: "middle", share: 0.7 };
 const FAR: Place = Place { name: "far", share: 2.0 };
 
+/// In which pose a groom is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moment {
+    /// After the frames of the setting, at rest in its place.
+    Still,
+    /// As it is in its file.
+    Rest,
+    /// In the middle of a motion of the head.
+    Shaken,
+}
+
 /// Vertical field of view in degrees.
 const FOV: f64 = 30.0;
 
@@ -27,6 +38,7 @@ pub(crate) struct Scene {
     /// As `tressfx` takes it; none where its folder is not known.
     pub(crate) groom: Option<String>,
     place: Place,
+    moment: Moment,
 }
 
 /// The box around a groom.
@@ -49,29 +61,52 @@ const GROOMS: [(&str, &str, bool); 6] = [
 /// In a quick run each groom is seen from one distance, and the dense one has fewer strands.
 const QUICK: [(&str, Place); 6] =
     [("curly", NEAR), ("fur", FAR), ("long", MIDDLE), ("dense", NEAR), ("mohawk", FAR), ("sintel", MIDDLE)];
+/// The grooms whose light is judged.
+const LIT: [&str; 5] = ["curly", "fur", "long", "mohawk", "sintel"];
 const QUICK_DENSE: &str = "builtin:long:32768:16";
 
 /// All scenes; those of real grooms have no groom unless TRESSFX_ASSETS names a folder.
 pub(crate) fn scenes(extent: Extent) -> Vec<Scene> {
     let assets = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from);
-    let scene = |name: &str, place: Place| {
+    let scene = |name: &str, place: Place, moment: Moment| {
         let (_, file, is_real) = GROOMS.iter().find(|groom| groom.0 == name).expect("a groom of the table");
         let file = if (name, extent) == ("dense", Extent::Quick) { QUICK_DENSE } else { file };
         let groom = match is_real {
             true => assets.as_ref().map(|assets| assets.join(file).to_string_lossy().into_owned()),
             false => Some(file.to_owned()),
         };
-        Scene { name: format!("{name}-{}", place.name), groom, place }
+        let seen = match moment {
+            Moment::Still => place.name,
+            Moment::Rest => "rest",
+            Moment::Shaken => "shaken",
+        };
+        Scene { name: format!("{name}-{seen}"), groom, place, moment }
     };
     match extent {
-        Extent::Quick => QUICK.iter().map(|&(name, place)| scene(name, place)).collect(),
+        Extent::Quick => QUICK.iter().map(|&(name, place)| scene(name, place, Moment::Still)).collect(),
         Extent::Full => {
-            GROOMS.iter().flat_map(|groom| [NEAR, MIDDLE, FAR].map(|place| scene(groom.0, place))).collect()
+            let places = [NEAR, MIDDLE, FAR];
+            GROOMS.iter().flat_map(|groom| places.map(|place| scene(groom.0, place, Moment::Still))).collect()
+        }
+        Extent::Light => {
+            let moments = [Moment::Rest, Moment::Shaken];
+            LIT.iter().flat_map(|&name| moments.map(|moment| scene(name, MIDDLE, moment))).collect()
         }
     }
 }
 
 impl Scene {
+    /// How `tressfx render` gets to the pose.
+    pub(crate) fn motion(&self, frames: u32) -> Vec<String> {
+        let frames = frames.to_string();
+        let words: &[&str] = match self.moment {
+            Moment::Still => &["--frames", &frames],
+            Moment::Rest => &["--frames", "0"],
+            Moment::Shaken => &["--frames", &frames, "--motion", "shake"],
+        };
+        words.iter().map(|word| (*word).to_owned()).collect()
+    }
+
     /// What `tressfx render --camera` takes: slightly from above, from in front or, where the groom is much deeper than wide,
     /// from the side.
     pub(crate) fn camera(&self, bounds: &Bounds) -> String {
@@ -92,7 +127,7 @@ mod tests {
 
     #[test]
     fn there_are_enough_scenes_and_none_twice() {
-        for (extent, count) in [(Extent::Quick, 6), (Extent::Full, 18)] {
+        for (extent, count) in [(Extent::Quick, 6), (Extent::Full, 18), (Extent::Light, 10)] {
             let mut names: Vec<_> = scenes(extent).into_iter().map(|scene| scene.name).collect();
             names.sort();
             names.dedup();
@@ -102,7 +137,7 @@ mod tests {
 
     #[test]
     fn the_camera_sees_the_middle_from_its_distance() {
-        let scene = Scene { name: String::new(), groom: None, place: NEAR };
+        let scene = Scene { name: String::new(), groom: None, place: NEAR, moment: Moment::Rest };
         let camera = scene.camera(&Bounds { min: [-1.0, 0.0, -2.0], max: [1.0, 4.0, 2.0] });
         let numbers: Vec<f64> = camera.split(',').map(|number| number.parse().unwrap()).collect();
         assert_eq!(numbers[3..], [0.0, 2.0, 0.0, 30.0]);
