@@ -17,7 +17,7 @@ use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Fill, HairRenderer, Light, Lights, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
+    Fill, HairRenderer, Light, Lights, LodDesc, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
     ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
@@ -66,7 +66,12 @@ fn what_has_no_file_has_its_defaults_too() {
     let PpllDesc { k, max_node_bytes, count_limit, fill, .. } = PpllDesc::default();
     let shortcut = ShortCutDesc::default();
     let ShadowDesc { texels, layers, cells, lights, samples, .. } = ShadowDesc::default();
-    let tables: [(&str, &[(&str, String)]); 5] = [
+    let LodDesc { width, deviation, least, .. } = LodDesc::default();
+    let tables: [(&str, &[(&str, String)]); 6] = [
+        (
+            "Level of detail in numbers",
+            &[("width", width.to_string()), ("deviation", deviation.to_string()), ("least", least.to_string())],
+        ),
         (
             "Shadows",
             &[
