@@ -6,6 +6,7 @@ use tressfx_backend_wgpu::{WgpuBackend, WgpuOptions};
 use tressfx_core::backend::Run;
 
 use crate::cli::{BackendName, Scene};
+use crate::say::say;
 
 /// Opens the backend that was asked for.
 pub(crate) fn open(args: &Scene) -> Result<Box<dyn Run>> {
@@ -28,6 +29,6 @@ pub(crate) fn adapters() -> Result<()> {
     if adapters.is_empty() {
         bail!("{}", WgpuBackend::headless().err().map_or(String::new(), |error| error.to_string()));
     }
-    adapters.iter().for_each(|adapter| println!("{adapter}"));
+    adapters.iter().try_for_each(say)?;
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 
 use crate::cli::{BackendName, Compare, Render};
+use crate::say::say;
 use crate::{compare, render};
 
 /// Renders with each backend into a file of its own, and compares the two.
@@ -24,7 +25,7 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         one.scene.stats = args.scene.stats.as_deref().map(|path| named(path, name));
         one.scene.trace = args.scene.trace.as_deref().map(|path| named(path, name));
         if args.scene.profile {
-            println!("{name}");
+            say(name)?;
         }
         render::run(&one)?;
     }

@@ -11,6 +11,7 @@ use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageFormat, Limits};
 use tressfx_compare::{Comparison, Picture, compare};
 
 use crate::cli::Compare;
+use crate::say::say;
 
 /// Comparing takes far more memory than a file does: this many pixels, a little more than 7680x4320, take some 3 GB.
 const MOST_PIXELS: u64 = 1 << 25;
@@ -23,8 +24,8 @@ pub(crate) fn run(args: &Compare) -> Result<()> {
         write(path, &comparison.heat_map).with_context(|| path.display().to_string())?;
     }
     match args.json {
-        true => println!("{}", serde_json::to_string_pretty(&comparison)?),
-        false => println!("{}", table(&comparison)),
+        true => say(serde_json::to_string_pretty(&comparison)?)?,
+        false => say(table(&comparison))?,
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ use tressfx_core::view::Lens;
 
 use crate::cli::Render;
 use crate::run::Run;
+use crate::say::say;
 use crate::studio::Studio;
 
 /// Gray of the farthest hair. What has no hair is black.
@@ -31,7 +32,7 @@ pub(crate) fn write(run: &mut Run, studio: &Studio, args: &Render) -> Result<()>
     if let Some(path) = &args.depth_out {
         let distances: Vec<_> = pixels.iter().map(|pixel| distance(studio.view.lens(), *pixel)).collect();
         let (gray, said) = grays(&distances);
-        println!("{}: {said}", path.display());
+        say(format_args!("{}: {said}", path.display()))?;
         save(path, args.size, gray)?;
     }
     Ok(())

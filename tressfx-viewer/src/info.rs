@@ -5,40 +5,41 @@ use tressfx_asset::Report;
 
 use crate::cli::Info;
 use crate::groom;
+use crate::say::say;
 
 /// Reports every file, as text or as a JSON array.
 pub(crate) fn run(args: &Info) -> Result<()> {
     let reports = args.grooms.iter().map(|name| Ok(Report::new(&groom::asset(name)?)?)).collect::<Result<Vec<_>>>()?;
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&reports)?);
+        say(serde_json::to_string_pretty(&reports)?)?;
         return Ok(());
     }
     for report in &reports {
-        print(report);
+        print(report)?;
     }
     Ok(())
 }
 
-fn print(report: &Report) {
+fn print(report: &Report) -> std::io::Result<()> {
     let Report { length, bounds, oddities, .. } = report;
     let unit = report.metres_per_unit;
-    println!("{}", report.name);
-    println!("  format     {:?}", report.format);
-    println!("  strands    {}", report.strands);
+    say(&report.name)?;
+    say(format_args!("  format     {:?}", report.format))?;
+    say(format_args!("  strands    {}", report.strands))?;
     let counts = match (report.min_vertices, report.max_vertices) {
         (min, max) if min == max => format!("{min} a strand"),
         (min, max) => format!("{min} to {max} a strand"),
     };
-    println!("  vertices   {} ({counts}, {} pinned)", report.vertices, report.pinned_vertices);
-    println!(
+    say(format_args!("  vertices   {} ({counts}, {} pinned)", report.vertices, report.pinned_vertices))?;
+    say(format_args!(
         "  length     {:.4} mean, {:.4} to {:.4}, {:.4} median",
         length.mean, length.min, length.max, length.median
-    );
-    println!("  bounds     {} to {}", bounds.min, bounds.max);
-    println!("  unit       {unit} m (from the size of the groom)");
-    println!("  follow     {} a guide", report.follow_count);
+    ))?;
+    say(format_args!("  bounds     {} to {}", bounds.min, bounds.max))?;
+    say(format_args!("  unit       {unit} m (from the size of the groom)"))?;
+    say(format_args!("  follow     {} a guide", report.follow_count))?;
     if !report.arrays.is_empty() {
-        println!("  also holds {}", report.arrays.join(", "));
+        say(format_args!("  also holds {}", report.arrays.join(", ")))?;
     }
     let odd = [
         (oddities.zero_length_segments, "zero-length segments"),
@@ -48,6 +49,7 @@ fn print(report: &Report) {
         (oddities.loose_roots, "strands whose root is not pinned"),
     ];
     for (count, what) in odd.into_iter().filter(|(count, _)| *count > 0) {
-        println!("  odd        {count} {what}");
+        say(format_args!("  odd        {count} {what}"))?;
     }
+    Ok(())
 }

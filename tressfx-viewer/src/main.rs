@@ -21,6 +21,7 @@ mod reference;
 mod reference_light;
 mod render;
 mod run;
+mod say;
 mod shaders;
 mod shadows;
 mod simulate;

@@ -19,6 +19,7 @@ use crate::cli::{ReferenceLight, Render};
 use crate::picture::{developed, texels};
 use crate::reference_light::Unshaded;
 use crate::run::{Progress, Run};
+use crate::say::say;
 use crate::stats::ReferenceStats;
 use crate::studio::Studio;
 
@@ -71,7 +72,7 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
         max_error: picture.error().map(|error| error.max),
     };
     let ReferenceStats { samples, shadow_rays, seconds, .. } = stats;
-    println!("reference: {samples} samples a pixel, {shadow_rays} rays towards light, {seconds:.1} s{error}");
+    say(format_args!("reference: {samples} samples a pixel, {shadow_rays} rays towards light, {seconds:.1} s{error}"))?;
     studio.drawn.reference = Some(stats);
     Ok(developed(picture.over(&scene).into_iter().map(|pixel| pixel.as_vec3()), args.size))
 }

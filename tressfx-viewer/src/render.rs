@@ -9,6 +9,7 @@ use tressfx_asset::mesh::Mesh;
 use crate::cli::Render;
 use crate::picture::{Output, developed, texels};
 use crate::run::{Progress, Run};
+use crate::say::say;
 use crate::stats::RenderStats;
 use crate::studio::Studio;
 use crate::{hair_output, passes, reference};
@@ -70,7 +71,7 @@ fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output,
     let drawn = draw.then(|| studio.draw(&mut list, run.head(&args.scene), run.sim.pose())).transpose()?;
     let picture = wanted.then(|| list.read_texture(studio.targets.color));
     if args.scene.print_passes && last {
-        println!("{}", passes::table(&list));
+        say(passes::table(&list))?;
     }
     run.trace.cpu("write the list", frame + 1, start);
     run.submit(&list)?;

@@ -17,6 +17,7 @@ use crate::cli::{self, BackendName};
 use crate::groom::Groom;
 use crate::motion;
 use crate::params::Params;
+use crate::say::say;
 use crate::stats::{GroomStats, PassTimes, RenderStats, SimStats, Stats};
 use crate::trace::Trace;
 
@@ -191,7 +192,7 @@ impl Run {
     /// Tells what was asked for: a table of costs, a trace, figures.
     pub(crate) fn report(&mut self, args: &cli::Scene, render: RenderStats) -> Result<()> {
         if args.profile {
-            println!("{}", self.times.table());
+            say(self.times.table())?;
         }
         if let Some(path) = &args.trace {
             self.trace.write(path)?;

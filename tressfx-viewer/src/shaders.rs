@@ -18,6 +18,7 @@ use tressfx_sim::{HairSim, SectionDesc, SimParams};
 use crate::cli;
 use crate::groom::Groom;
 use crate::params::Params;
+use crate::say::say;
 
 /// An entry point in `bindings.json`.
 #[derive(Serialize)]
@@ -105,7 +106,7 @@ pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
     }
     let path = args.out.join("bindings.json");
     fs::write(&path, serde_json::to_string_pretty(&entries)? + "\n").with_context(|| path.display().to_string())?;
-    println!("{} entry points, described in {}", entries.len(), path.display());
+    say(format_args!("{} entry points, described in {}", entries.len(), path.display()))?;
     Ok(())
 }
 

@@ -9,6 +9,7 @@ use tressfx_asset::WriteFormat;
 use crate::cli::Simulate;
 use crate::passes;
 use crate::run::{Progress, Run};
+use crate::say::say;
 use crate::stats::RenderStats;
 
 /// Simulates all frames and writes the pose that they end in.
@@ -21,7 +22,7 @@ pub(crate) fn run(args: &Simulate) -> Result<()> {
     for frame in 0..frames {
         let list = run.step(&args.scene)?;
         if args.scene.print_passes && frame == 0 {
-            println!("{}", passes::table(&list));
+            say(passes::table(&list))?;
         }
         run.submit(&list)?;
         progress.advance();

@@ -1,7 +1,7 @@
 //! The program as its users call it.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
@@ -351,4 +351,13 @@ fn rods_say_which_stand_and_refuse_a_material_that_is_none() {
     assert!(stiff != soft && stiff != pose(&[]).0, "materials move in their own ways");
     let (message, _) = fails(&folder, &[&simulate[..], &["--preset", "bald"]].concat());
     assert!(message.contains("bald") && message.contains("sprayed"), "{message}");
+}
+
+#[test]
+fn that_nobody_reads_to_the_end_is_no_error() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tressfx"));
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = command.args(["info", "builtin:long:10"]).stdout(writer).stderr(Stdio::piped()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
