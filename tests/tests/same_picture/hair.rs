@@ -8,7 +8,7 @@ use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::render::{Groom, Random};
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::strands::{StrandOptions, Strands, relative_to};
-use tressfx_render::{Material, StrandInfo};
+use tressfx_render::{Lod, Material, StrandInfo};
 
 /// What of each groom a scene takes is made once.
 #[derive(Default)]
@@ -25,6 +25,7 @@ fn made(name: &str) -> Groom {
     let mut groom = match name {
         "loose" => Groom::wavy(40, 12, 1, material),
         "dense" => Groom::wavy(1200, 12, 3, material),
+        "some" => Groom { lod: Lod { share: 0.2511, step: 5 }, ..Groom::wavy(1200, 12, 3, material) },
         "other" => Groom::wavy(60, 9, 8, material),
         "one strand" => Groom::wavy(1, 24, 2, material),
         "two vertices" => Groom::new(&lines(200, |from, to| vec![from, to]), material),
@@ -79,6 +80,6 @@ fn grown(name: &str, material: Material) -> Groom {
         info,
         material,
         pose: tressfx_core::view::Pose::IDENTITY,
-        lod: tressfx_render::Lod::FULL,
+        lod: Lod::FULL,
     }
 }

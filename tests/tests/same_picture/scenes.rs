@@ -185,6 +185,7 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("strands that follow guides", FOLLOWED, (Eye::Middle, Look::Default, Solid::Nothing), [160, 96], USUAL),
     scene("loose", LOOSE, (Eye::Middle, Look::Wide, Solid::Nothing), [160, 96], USUAL),
     scene("dense", THICK, (Eye::Middle, Look::Blunt, Solid::Nothing), [128, 96], USUAL),
+    scene("some of the strands and vertices", &["some", "other"], (Eye::Middle, Look::Varied, Solid::Nothing), [128, 96], USUAL),
     scene("one strand", &["one strand"], (Eye::Middle, Look::Wide, Solid::Nothing), [64, 64], USUAL),
     scene("two vertices", &["two vertices"], (Eye::Middle, Look::Default, Solid::Nothing), [160, 96], USUAL),
     scene("most vertices", &["most vertices"], (Eye::Middle, Look::Default, Solid::Nothing), [160, 96], USUAL),
