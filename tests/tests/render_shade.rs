@@ -7,7 +7,7 @@ use tressfx_conformance::render::{Groom, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
-use tressfx_render::{Highlight, Light, Material, SectionDraw, ViewDraw, reference};
+use tressfx_render::{Cone, DrawError, Highlight, Light, Material, SectionDraw, ViewDraw, reference};
 
 use support::screen;
 
@@ -43,6 +43,8 @@ fn error(screen: &mut Screen, groom: &Groom) -> f64 {
 fn every_vertex_is_as_in_f64() {
     let Some(mut screen) = screen(|_| ()) else { return };
     screen.lights.lights.push(Light::point(Vec3::new(0.4, 0.3, 0.8), 0.7, Vec3::new(2.0, 1.0, 0.5)));
+    let cone = Cone { along: Vec3::new(-0.2, -0.5, -0.7), inner: 0.2, outer: 0.9 };
+    screen.lights.lights.push(Light::spot(Vec3::new(0.1, 0.9, 1.0), 1.0, cone, Vec3::new(0.3, 0.5, 2.0)));
     let sharp = Highlight { strength: 1.0, exponent: 200.0 };
     let materials = [
         Material::default(),
@@ -84,4 +86,44 @@ fn more_light_than_a_half_float_holds_is_clamped() {
     let groom = Groom::wavy(20, 8, 2, Material::default());
     let brightest = shaded(&mut screen, &groom).iter().map(|c| c.x).fold(0.0, f64::max);
     assert!((59_000.0..61_000.0).contains(&brightest), "{brightest}");
+}
+
+#[test]
+fn a_cone_is_lit_inside_dark_outside_and_fades_between() {
+    let Some(mut screen) = screen(|_| ()) else { return };
+    // Strands on a plane before the eye, beside each other, along y; the light is straight before their middle.
+    let strands: Vec<Vec<Vec3>> =
+        (0..101).map(|i| (0..5).map(|v| Vec3::new(0.02 * i as f32 - 1.0, 0.001 * v as f32, 0.0)).collect()).collect();
+    let flat = Material::default().with(|m| (m.primary.strength, m.secondary.strength, m.variation) = (0.0, 0.0, 0.0));
+    let groom = Groom::new(&strands, flat.with(|m| m.root_shade = 0.0));
+    let bright = |screen: &mut Screen, light: Light| -> Vec<f64> {
+        (screen.lights.sky, screen.lights.ground, screen.lights.lights) = (Vec3::ZERO, Vec3::ZERO, vec![light]);
+        shaded(screen, &groom)[..101].iter().map(|color| color.x).collect()
+    };
+    let position = Vec3::new(0.0, 0.0, 1.0);
+    let all = bright(&mut screen, Light::point(position, 10.0, Vec3::ONE));
+    let cone = Cone { along: -Vec3::Z, inner: 0.3, outer: 0.5 };
+    let some = bright(&mut screen, Light::spot(position, 10.0, cone, Vec3::ONE));
+    for (i, (all, some)) in all.iter().zip(&some).enumerate() {
+        let angle = f64::from(0.02 * i as f32 - 1.0).abs().atan();
+        let expected = ((angle.cos() - 0.5_f64.cos()) / (0.3_f64.cos() - 0.5_f64.cos())).clamp(0.0, 1.0).powi(2);
+        assert!((some / all - expected).abs() < 0.003, "{angle}: {} for {expected}", some / all);
+    }
+}
+
+#[test]
+fn a_cone_that_is_none_is_refused() {
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let groom = Groom::wavy(3, 5, 1, Material::default());
+    let mut list = PassList::new();
+    let section = screen.section(&mut list, &groom);
+    let cones =
+        [(Vec3::ZERO, 0.1, 0.2), (Vec3::NAN, 0.1, 0.2), (Vec3::X, 0.2, 0.2), (Vec3::X, -0.1, 0.2), (Vec3::X, 0.1, 3.2)];
+    for (along, inner, outer) in cones {
+        screen.lights.lights = vec![Light::spot(Vec3::ZERO, 1.0, Cone { along, inner, outer }, Vec3::ONE)];
+        let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+        let draw = SectionDraw::new(&section, &groom.material, groom.pose);
+        let said = screen.renderer.draw(&mut PassList::new(), &[view], &[draw]).unwrap_err();
+        assert!(matches!(said, DrawError::Cone { light: 0, .. }) && said.to_string().contains("light 0"), "{said}");
+    }
 }

@@ -1,9 +1,10 @@
 //! Why hair is not drawn.
 
+use glam::Vec3;
 use tressfx_core::error::Error;
 use tressfx_core::view::PoseError;
 
-use crate::lights::{Lights, MAX_LIGHTS};
+use crate::lights::{Cone, LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::strands::SectionDraw;
 use crate::views::MAX_VIEWS;
@@ -18,6 +19,20 @@ pub enum DrawError {
     /// More lights than a view can have.
     #[error("hair.render: {0} lights, a view can have {MAX_LIGHTS}")]
     Lights(usize),
+    /// The cone of a light is none.
+    #[error(
+        "hair.render: light {light} shines along {along} into a cone from {inner} to {outer} radians: it takes a direction, and 0 <= inner < outer <= pi"
+    )]
+    Cone {
+        /// Which light.
+        light: usize,
+        /// Its direction.
+        along: Vec3,
+        /// The angle up to which light is full.
+        inner: f32,
+        /// The angle from which on there is none.
+        outer: f32,
+    },
     /// A view is larger than what the renderer was made for.
     #[error("hair.render: a view of {view:?} pixels, the renderer was made for {renderer:?}")]
     Size {
@@ -63,5 +78,15 @@ pub(crate) fn check_section(draw: &SectionDraw) -> Result<(), DrawError> {
 
 /// Whether a view can have these lights.
 pub(crate) fn check_lights(lights: &Lights) -> Result<(), DrawError> {
-    if lights.lights.len() > MAX_LIGHTS { Err(DrawError::Lights(lights.lights.len())) } else { Ok(()) }
+    if lights.lights.len() > MAX_LIGHTS {
+        return Err(DrawError::Lights(lights.lights.len()));
+    }
+    let cones = lights.lights.iter().enumerate().filter_map(|(light, of)| match of.place {
+        LightPlace::Point { cone: Some(cone), .. } => Some((light, cone)),
+        _ => None,
+    });
+    match cones.into_iter().find(|(_, cone)| !cone.is_valid()) {
+        Some((light, Cone { along, inner, outer })) => Err(DrawError::Cone { light, along, inner, outer }),
+        None => Ok(()),
+    }
 }

@@ -65,7 +65,7 @@ mod views;
 pub use auto::AutoDesc;
 pub use counters::Counters;
 pub use draw_error::DrawError;
-pub use lights::{Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth};
+pub use lights::{Cone, Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth};
 pub use lod::{Bends, Lod, LodDesc};
 pub use material::{Highlight, Material, MaterialError};
 pub use output::HAIR_FORMAT;

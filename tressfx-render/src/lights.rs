@@ -19,9 +19,40 @@ pub enum LightPlace {
     Point {
         /// The point in the world.
         position: Vec3,
-        /// Up to this distance the light has its full colour; beyond it falls with the square of the distance.
+        /// Up to this distance the light has its full colour; beyond it falls with the square of the distance. With a reach of a metre, the
+        /// colour of a light of `I` candela is `I / pi`, in candela a square metre.
         reach: f32,
+        /// What it shines into; none for all directions.
+        cone: Option<Cone>,
     },
+}
+
+/// What a spot light shines into. Between both angles light fades as glTF's `KHR_lights_punctual` proposes: with the square of what is
+/// linear in the cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// The direction in the world in which the light shines, of any length but 0.
+    pub along: Vec3,
+    /// Radians from it up to which light is full.
+    pub inner: f32,
+    /// Radians from which on there is none: more than `inner`, at most pi.
+    pub outer: f32,
+}
+
+impl Cone {
+    /// Whether a light can have it.
+    pub(crate) fn is_valid(&self) -> bool {
+        let Self { along, inner, outer } = *self;
+        along.is_finite() && along != Vec3::ZERO && inner >= 0.0 && inner < outer && outer <= std::f32::consts::PI
+    }
+
+    /// A vector whose product with the unit direction towards the light, and a number that added to that is the root of the share of the
+    /// light, before it is cut to between 0 and 1.
+    pub(crate) fn ramp(&self) -> (Vec3, f32) {
+        // A ramp that is no steeper than glTF allows.
+        let scale = 1.0 / (self.inner.cos() - self.outer.cos()).max(0.001);
+        (-self.along.normalize_or_zero() * scale, -self.outer.cos() * scale)
+    }
 }
 
 /// The depth of the opaque scene as a light sees it: an engine's shadow map.
@@ -56,7 +87,12 @@ impl Light {
 
     /// A light at a point, with shadows; it has its full colour up to the distance `reach`.
     pub fn point(position: Vec3, reach: f32, color: Vec3) -> Self {
-        Self { place: LightPlace::Point { position, reach }, color, casts: true, opaque: None }
+        Self { place: LightPlace::Point { position, reach, cone: None }, color, casts: true, opaque: None }
+    }
+
+    /// A light at a point that shines into a cone, with shadows; it has its full colour up to the distance `reach`.
+    pub fn spot(position: Vec3, reach: f32, cone: Cone, color: Vec3) -> Self {
+        Self { place: LightPlace::Point { position, reach, cone: Some(cone) }, ..Self::point(position, reach, color) }
     }
 
     /// The same with shadows of an opaque scene.

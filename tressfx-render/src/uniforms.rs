@@ -18,6 +18,8 @@ gpu_struct! {
         pub place: [f32; 4],
         /// Colour, and the distance up to which a point light has it.
         pub color: [f32; 4],
+        /// The share that a cone leaves is the square of this vector times the direction towards the light, plus the fourth number.
+        pub cone: [f32; 4],
     }
 }
 
@@ -146,7 +148,7 @@ fn with(v: Vec3, w: f32) -> [f32; 4] {
 impl LightUniform {
     /// The lights; those beyond [`MAX_LIGHTS`] are left out, and places without one are dark.
     pub(crate) fn all(lights: &Lights) -> [Self; MAX_LIGHTS] {
-        let mut all = [Self { place: [0.0; 4], color: [0.0; 4] }; MAX_LIGHTS];
+        let mut all = [Self { place: [0.0; 4], color: [0.0; 4], cone: [0.0; 4] }; MAX_LIGHTS];
         all.iter_mut().zip(&lights.lights).for_each(|(slot, light)| *slot = light.into());
         all
     }
@@ -154,11 +156,12 @@ impl LightUniform {
 
 impl From<&crate::Light> for LightUniform {
     fn from(light: &crate::Light) -> Self {
-        let (place, reach) = match light.place {
-            LightPlace::Directional { towards } => (with(towards.normalize_or(Vec3::Y), 0.0), 0.0),
-            LightPlace::Point { position, reach } => (with(position, 1.0), reach),
+        let (place, reach, cone) = match light.place {
+            LightPlace::Directional { towards } => (with(towards.normalize_or(Vec3::Y), 0.0), 0.0, None),
+            LightPlace::Point { position, reach, cone } => (with(position, 1.0), reach, cone),
         };
-        Self { place, color: with(light.color, reach) }
+        let (ramp, offset) = cone.map_or((Vec3::ZERO, 1.0), |cone| cone.ramp());
+        Self { place, color: with(light.color, reach), cone: with(ramp, offset) }
     }
 }
 

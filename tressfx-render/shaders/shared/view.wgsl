@@ -7,6 +7,8 @@ struct LightUniform {
     place: vec4<f32>,
     // Radiance on a surface that faces it; for a point light at the distance in w, beyond which it falls off.
     color: vec4<f32>,
+    // The share that a cone leaves is the square of `xyz` times the direction towards the light, plus `w`.
+    cone: vec4<f32>,
 }
 
 // A point at the distance d from the plane of the eye falls on the pixel
@@ -53,7 +55,9 @@ fn towards(light: LightUniform, point: vec3<f32>) -> vec4<f32> {
     let offset = light.place.xyz - point;
     let square = max(dot(offset, offset), 1e-20);
     let reach = light.color.w * light.color.w;
-    return vec4(offset * inverseSqrt(square), min(reach / square, 1.0));
+    let direction = offset * inverseSqrt(square);
+    let root = saturate(dot(light.cone.xyz, direction) + light.cone.w);
+    return vec4(direction, min(reach / square, 1.0) * root * root);
 }
 
 // From a point towards the eye, of any length.

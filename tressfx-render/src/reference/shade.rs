@@ -54,10 +54,16 @@ fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibr
 pub(super) fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
     match light.place {
         LightPlace::Directional { towards } => (towards.as_dvec3().normalize(), 1.0),
-        LightPlace::Point { position, reach } => {
+        LightPlace::Point { position, reach, cone } => {
             let offset = position.as_dvec3() - point;
             let reach = f64::from(reach);
-            (offset.normalize_or_zero(), (reach * reach / offset.length_squared()).min(1.0))
+            let direction = offset.normalize_or_zero();
+            let left = cone.map_or(1.0, |cone| {
+                let [inner, outer] = [cone.inner, cone.outer].map(|angle| f64::from(angle).cos());
+                let cosine = -direction.dot(cone.along.as_dvec3().normalize());
+                ((cosine - outer) / (inner - outer).max(0.001)).clamp(0.0, 1.0).powi(2)
+            });
+            (direction, left * (reach * reach / offset.length_squared()).min(1.0))
         }
     }
 }
