@@ -18,7 +18,7 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
     Fill, HairRenderer, Light, Lights, LodDesc, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
-    ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, ViewDraw,
+    ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
@@ -160,8 +160,10 @@ fn everything() -> PassList {
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();
     let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+    let velocity = texture(VELOCITY_FORMAT);
     let map = OpaqueDepth { depth: texture(Format::Depth32F), view, bias: 0.01 };
     let section = ShadedStrands::new(&mut backend, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
+    let section = section.with_past(&mut backend).unwrap();
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
     let light = Light::directional(glam::Vec3::Y, glam::Vec3::ONE).opaque(map);
@@ -183,6 +185,9 @@ fn everything() -> PassList {
         renderer.grow_to_predicted(&mut backend, &view, &[draw]).unwrap();
         renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     }
+    let desc = RenderDesc::new(size, Format::Rgba16F).velocity_output(true);
+    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets.velocity(velocity))], &[draw]).unwrap();
     list
 }
 

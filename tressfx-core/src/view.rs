@@ -4,7 +4,7 @@ mod camera;
 mod lens;
 mod pose;
 
-use glam::Mat4;
+use glam::{Mat4, Vec2};
 
 use crate::backend::DepthOrder;
 
@@ -104,7 +104,8 @@ pub enum ViewError {
 pub struct View {
     view: Mat4,
     projection: Mat4,
-    previous: Mat4,
+    previous: [Mat4; 2],
+    jitter: [Vec2; 2],
     viewport: Viewport,
     depth: DepthOrder,
     lens: Lens,
@@ -128,13 +129,20 @@ impl View {
         let viewport = viewport.into();
         let lens =
             if viewport.is_empty() { Lens::default() } else { Lens::new(view, projection, depth, viewport.size())? };
-        Ok(Self { view, projection, previous: projection * view, viewport, depth, lens })
+        Ok(Self { view, projection, previous: [view, projection], jitter: [Vec2::ZERO; 2], viewport, depth, lens })
     }
 
-    /// The same view, with the matrices that the frame before was drawn with.
+    /// The same view, with the matrices that the frame before was drawn with, in the same order of depth and for as many pixels.
     #[must_use]
     pub fn with_previous(self, view: Mat4, projection: Mat4) -> Self {
-        Self { previous: projection * view, ..self }
+        Self { previous: [view, projection], ..self }
+    }
+
+    /// The same view, where the projection of this frame moves the picture by `now` and that of the frame before moved it by `previous`,
+    /// in pixels to the right and down: motion is measured without them.
+    #[must_use]
+    pub fn with_jitter(self, now: Vec2, previous: Vec2) -> Self {
+        Self { jitter: [now, previous], ..self }
     }
 
     /// World to view.
@@ -154,7 +162,17 @@ impl View {
 
     /// World to clip in the frame before; that of this frame where nothing else was given.
     pub fn previous_view_projection(&self) -> Mat4 {
+        self.previous[1] * self.previous[0]
+    }
+
+    /// World to view and view to clip in the frame before; those of this frame where nothing else was given.
+    pub fn previous_matrices(&self) -> [Mat4; 2] {
         self.previous
+    }
+
+    /// Pixels to the right and down by which the projections of this frame and of the one before move the picture.
+    pub fn jitter(&self) -> [Vec2; 2] {
+        self.jitter
     }
 
     /// Where the picture goes.

@@ -1,6 +1,7 @@
 // The resolved hair lies over the picture: six vertices for each tile with hair, in the order in which they were found.
 
-import package::tile::{TILE, resolved_index};
+import package::corner::corner_of_tile;
+import package::tile::resolved_index;
 import package::view::ViewUniform;
 
 @if(hair_output)
@@ -23,15 +24,8 @@ struct Corner {
 @vertex
 fn tile_corner(@builtin(vertex_index) vertex: u32) -> Corner {
     let listed = tiles[vertex / 6u];
-    let tile = listed.x;
-    let columns = (view.size.x + TILE - 1u) / TILE;
-    // Two triangles with the corners 0 1 2 and 2 1 3, two bits each.
-    let corner = (0xda4u >> (2u * (vertex % 6u))) & 3u;
-    let pixel = (vec2(tile % columns, tile / columns) + vec2(corner & 1u, corner >> 1u)) * TILE;
-    // Tiles at the edge end where the viewport does.
-    let place = min(pixel, view.size) + view.offset;
-    let clip = vec2<f32>(place) / vec2<f32>(view.target_size) * 2.0 - 1.0;
-    return Corner(vec4(clip.x, -clip.y, 0.0, 1.0), listed.y);
+    let position = corner_of_tile(listed.x, vertex % 6u, view.size, view.offset, view.target_size);
+    return Corner(position, listed.y);
 }
 
 @if(!hair_output)

@@ -15,6 +15,7 @@ use crate::output::Output;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::predict;
 use crate::renderer::Targets;
+use crate::resolved::Resolved;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::tiles::{Tiles, TilesDesc};
@@ -268,6 +269,10 @@ impl TechniqueInstance for Auto {
             self.predicted = Predicted { vertices: crate::tiles::vertices(draws), ..Predicted::default() };
         }
         self.active_mut().begin(list, views, draws);
+    }
+
+    fn hairy(&self) -> &Resolved {
+        self.active().hairy()
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {

@@ -3,16 +3,18 @@
 use tressfx_core::backend::{Backend, Blend, RasterDesc};
 use tressfx_core::error::Result;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
-use tressfx_core::shader::RasterPipeline;
+use tressfx_core::shader::{Module, RasterPipeline};
 
 use crate::bound::Bound;
 use crate::output::{HAIR_FORMAT, Output};
 use crate::renderer::Targets;
 use crate::resolved::Resolved;
-use crate::shaders::{SHARED, shader};
+use crate::shaders::{CORNER, shader, with_shared};
 use crate::views::BoundView;
 
 const LABEL: &str = "hair.render.composite";
+
+const LIBRARY: &[Module] = &with_shared::<1, 17>([CORNER]);
 
 #[derive(Debug)]
 pub(crate) struct Composite {
@@ -23,7 +25,7 @@ pub(crate) struct Composite {
 impl Composite {
     pub(crate) fn new(backend: &mut dyn Backend, output: Output) -> Result<Self> {
         let root = ("composite", include_str!("../shaders/composite.wgsl"));
-        let shader = shader(LABEL, root, &SHARED, &output.specialization())?;
+        let shader = shader(LABEL, root, LIBRARY, &output.specialization())?;
         let mut desc = RasterDesc::new(shader).target(output.color, Blend::Over);
         if output.hair {
             desc = desc.target(HAIR_FORMAT, Blend::Replace);

@@ -51,6 +51,20 @@ pub enum DrawError {
         "hair.render: a view has a target for depth and coverage of hair, the renderer was made without `hair_output`"
     )]
     UnusedHairTarget,
+    /// A view names no texture for the motion of hair.
+    #[error(
+        "hair.render: the renderer was made to write the motion of hair (`velocity_output`), a view has no target for it"
+    )]
+    NoVelocityTarget,
+    /// A view names a texture for the motion of hair that the renderer does not write.
+    #[error("hair.render: a view has a target for the motion of hair, the renderer was made without `velocity_output`")]
+    UnusedVelocityTarget,
+    /// Strands have no room for where they were.
+    #[error("hair.render: strands have no room for the positions of the frame before (`ShadedStrands::with_past`)")]
+    NoPast,
+    /// The matrices of the frame before, or the jitter of a view, are not finite.
+    #[error("hair.render: the matrices of the frame before, or the jitter, hold numbers that are not finite")]
+    PreviousView,
     /// The pose of a section is not valid.
     #[error("hair.render: {0}")]
     Pose(#[from] PoseError),

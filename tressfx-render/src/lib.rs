@@ -25,6 +25,10 @@
 //! hair.render.tile_blend        compute  a group a tile: its fragments in order                             Technique::Tiles
 //!
 //! hair.render.composite         raster   tiles of pixels with hair: blended over the caller's picture       every technique
+//!
+//! hair.render.seen_keys         compute  one thread a strand segment: the fragment a pixel is seen to have  velocity_output
+//! hair.render.seen_segments     compute  one thread a strand segment: which segment that is of              velocity_output
+//! hair.render.velocity          raster   tiles of pixels with hair: how far it has moved                    velocity_output
 //! ```
 //!
 //! With [`Fill::Raster`] raster passes with two triangles a strand segment do what the compute passes over segments do. Their
@@ -60,6 +64,7 @@ mod technique;
 mod tiles;
 pub mod uniforms;
 mod usage;
+mod velocity;
 mod views;
 
 pub use auto::AutoDesc;
@@ -79,4 +84,5 @@ pub use shortcut::ShortCutDesc;
 pub use strands::{SectionDraw, ShadedStrands, StrandInfo};
 pub use technique::Technique;
 pub use tiles::TilesDesc;
+pub use velocity::VELOCITY_FORMAT;
 pub use views::{MAX_VIEWS, ViewDraw};

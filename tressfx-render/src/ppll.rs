@@ -399,6 +399,10 @@ impl TechniqueInstance for Ppll {
         self.pool.upload(list, groups, [self.kept, self.desc.asked()], tail::unlit(draws));
     }
 
+    fn hairy(&self) -> &Resolved {
+        &self.resolved
+    }
+
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.pool.clear_heads(list, view.size);
         self.resolved.clear(list);

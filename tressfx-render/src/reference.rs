@@ -11,6 +11,8 @@ mod nearest;
 mod projection;
 mod resolve;
 mod ribbon;
+mod seen_keys;
+mod seen_segments;
 mod shade;
 mod shadow;
 mod shadow_bounds;
@@ -22,6 +24,7 @@ mod shadow_sum;
 mod shortcut_colors;
 mod shortcut_depths;
 mod shortcut_resolve;
+mod velocity;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -33,6 +36,8 @@ pub use fill::{Fragment, fill};
 pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};
 pub use nearest::nearest;
 pub use resolve::{resolve, resolve_at_places, resolve_with_tail};
+pub use seen_keys::seen_keys;
+pub use seen_segments::seen_segments;
 pub use shade::shade;
 pub use shadow::{ShadowCell, ShadowCells};
 pub use shadow_bounds::shadow_bounds;
@@ -44,6 +49,7 @@ pub use shadow_sum::shadow_sum;
 pub use shortcut_colors::shortcut_colors;
 pub use shortcut_depths::{LayerPlace, Layers, shortcut_depths};
 pub use shortcut_resolve::shortcut_resolve;
+pub use velocity::velocity;
 
 /// What arrives at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]

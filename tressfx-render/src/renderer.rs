@@ -15,6 +15,7 @@ use crate::shade::Shade;
 use crate::shadow::{ShadowDesc, Shadows};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance};
+use crate::velocity::{Seen, Velocity};
 use crate::views::{MAX_VIEWS, ViewDraw, Views};
 
 /// The pool is made this many times as large as predicted or measured, since the next frame may need more.
@@ -37,6 +38,8 @@ pub struct RenderDesc {
     pub technique: Technique,
     /// Whether depth and coverage of the hair are written too: see [`Targets::hair`].
     pub hair_output: bool,
+    /// Whether the motion of hair on the screen is written too: see [`Targets::velocity`].
+    pub velocity_output: bool,
     /// How shadows are made; none lights every strand as if it were alone.
     pub shadows: Option<ShadowDesc>,
 }
@@ -45,7 +48,8 @@ impl RenderDesc {
     /// The default technique, lists of fragments for each pixel, and shadows.
     pub fn new(size: [u32; 2], target: Format) -> Self {
         let shadows = Some(ShadowDesc::default());
-        Self { size, target, technique: Technique::default(), hair_output: false, shadows }
+        let technique = Technique::default();
+        Self { size, target, technique, hair_output: false, velocity_output: false, shadows }
     }
 
     /// The same with other shadows, or with none.
@@ -64,6 +68,13 @@ impl RenderDesc {
     #[must_use]
     pub fn hair_output(self, hair_output: bool) -> Self {
         Self { hair_output, ..self }
+    }
+
+    /// The same with or without the motion of hair, which takes 8 bytes a pixel, and strands with room for their past
+    /// ([`ShadedStrands::with_past`](crate::ShadedStrands::with_past)). What does not ask for it pays nothing.
+    #[must_use]
+    pub fn velocity_output(self, velocity_output: bool) -> Self {
+        Self { velocity_output, ..self }
     }
 
     fn output(&self) -> Output {
@@ -87,18 +98,32 @@ pub struct Targets {
     /// of at least 0.02, or of the nearest one where all are fainter. Green is `1 - transmittance`, the alpha with which hair is blended
     /// over the picture. Pixels without hair keep what they have, so the caller clears them.
     pub hair: Option<TextureId>,
+    /// Motion of the hair on the screen, [`VELOCITY_FORMAT`](crate::VELOCITY_FORMAT), of the same size; where
+    /// [`RenderDesc::velocity_output`] is set, and only there.
+    ///
+    /// Red and green are where the hair is less where it was in the frame before: pixels, to the right and down, without the
+    /// [jitter](View::with_jitter) of either frame. It is that of the axis of the segment whose depth [`Targets::hair`] has. The camera of the frame before is
+    /// [`View::with_previous`], the strands' positions are what [`ShadedStrands::keep_past`](crate::ShadedStrands::keep_past) has kept; without that, hair moves with
+    /// the camera alone. What was not before the eye has a motion of 0. Pixels without hair keep what they have.
+    pub velocity: Option<TextureId>,
 }
 
 impl Targets {
     /// Two textures of one size.
     pub fn new(color: TextureId, depth: TextureId) -> Self {
-        Self { color, depth, hair: None }
+        Self { color, depth, hair: None, velocity: None }
     }
 
     /// The same with a texture for depth and coverage of the hair.
     #[must_use]
     pub fn hair(self, hair: TextureId) -> Self {
         Self { hair: Some(hair), ..self }
+    }
+
+    /// The same with a texture for the motion of the hair.
+    #[must_use]
+    pub fn velocity(self, velocity: TextureId) -> Self {
+        Self { velocity: Some(velocity), ..self }
     }
 }
 
@@ -115,6 +140,7 @@ pub struct HairRenderer {
     cast: Option<(Lights, bool)>,
     shade: Shade,
     order: Box<dyn TechniqueInstance>,
+    velocity: Option<Velocity>,
     /// Frees everything above.
     owner: Owner,
 }
@@ -125,13 +151,14 @@ impl HairRenderer {
     /// # Errors
     /// A `k` that the technique does not take, a setting of shadows out of its range, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
-        let ((order, views, shadows, shade), owner) = Owner::build(backend, |backend| {
+        let ((order, velocity, views, shadows, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.output())?;
+            let velocity = desc.velocity_output.then(|| Velocity::new(backend, desc.size)).transpose()?;
             let shadows = desc.shadows.map(|desc| Shadows::new(backend, &desc)).transpose()?;
             let shade = Shade::new(backend, shadows.is_some())?;
-            Ok::<_, Error>((order, Views::new(backend)?, shadows, shade))
+            Ok::<_, Error>((order, velocity, Views::new(backend)?, shadows, shade))
         })?;
-        Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, owner })
+        Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, velocity, owner })
     }
 
     /// What it was made from.
@@ -162,6 +189,11 @@ impl HairRenderer {
         self.shadows.as_ref().map_or(0, Shadows::bytes)
     }
 
+    /// Bytes of the buffers with which the motion of hair is found.
+    pub fn velocity_bytes(&self) -> u64 {
+        self.velocity.as_ref().map_or(0, Velocity::bytes)
+    }
+
     /// Whether tiles draw the next frame: [`Technique::Auto`] may choose them, and lists again.
     pub fn uses_tiles(&self) -> bool {
         self.order.uses_tiles()
@@ -179,7 +211,13 @@ impl HairRenderer {
     /// # Errors
     /// As [`HairRenderer::new`]. If it fails, the renderer is unchanged.
     pub fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        self.owner.change(backend, |backend| self.order.resize(backend, size))?;
+        let Self { order, velocity, owner, .. } = self;
+        owner.change(backend, |backend| {
+            let seen = velocity.as_ref().map(|_| Seen::new(backend, size)).transpose()?;
+            order.resize(backend, size)?;
+            velocity.iter_mut().zip(seen).for_each(|(velocity, seen)| velocity.resize(backend, seen));
+            Ok::<_, Error>(())
+        })?;
         self.desc.size = size;
         Ok(())
     }
@@ -258,6 +296,7 @@ impl HairRenderer {
         self.order.check(&draws)?;
         self.order.begin(list, views.len(), &draws);
         self.shade.begin();
+        self.velocity.iter_mut().for_each(Velocity::begin_frame);
         let cast = self.cast.take();
         if cast.is_none() {
             self.shadows.iter_mut().for_each(Shadows::begin);
@@ -280,6 +319,9 @@ impl HairRenderer {
                 self.shade.pass(list, &view, draw, is_shadowed)?;
             }
             self.order.draw(list, &view, &seen.targets, &draws)?;
+            if let (Some(velocity), Some(target)) = (&mut self.velocity, seen.targets.velocity) {
+                velocity.passes(list, &view, [seen.targets.depth, target], &draws, self.order.hairy())?;
+            }
         }
         Ok(())
     }
@@ -295,12 +337,28 @@ impl HairRenderer {
                 (false, Some(_)) => return Err(DrawError::UnusedHairTarget),
                 _ => (),
             }
+            self.check_velocity(draw)?;
             let (view, renderer) = (draw.view.size(), self.desc.size);
             if !draw.view.is_empty() && (view[0] > renderer[0] || view[1] > renderer[1]) {
                 return Err(DrawError::Size { view, renderer });
             }
         }
-        draws.iter().try_for_each(check_section)
+        draws.iter().try_for_each(check_section)?;
+        let has_past = draws.iter().all(|draw| draw.is_empty() || draw.strands.past.is_some());
+        if self.velocity.is_some() && !has_past { Err(DrawError::NoPast) } else { Ok(()) }
+    }
+
+    fn check_velocity(&self, draw: &ViewDraw) -> std::result::Result<(), DrawError> {
+        let is_finite = |view: &View| {
+            view.previous_matrices().iter().all(|matrix| matrix.is_finite())
+                && view.jitter().iter().all(|j| j.is_finite())
+        };
+        match (&self.velocity, draw.targets.velocity) {
+            (Some(_), None) => Err(DrawError::NoVelocityTarget),
+            (None, Some(_)) => Err(DrawError::UnusedVelocityTarget),
+            (Some(_), _) if !draw.view.is_empty() && !is_finite(draw.view) => Err(DrawError::PreviousView),
+            _ => Ok(()),
+        }
     }
 
     /// Reads back the counters of a view, as they are at this place of the list; [`Counters::from_bytes`] decodes them.
@@ -319,157 +377,4 @@ impl HairRenderer {
 }
 
 #[cfg(test)]
-mod tests {
-    use tressfx_core::null::NullBackend;
-
-    use super::*;
-    use crate::ppll::{K_RANGE, Ppll, PpllDesc};
-    use crate::segments::Fill;
-    use crate::shortcut::{ShortCut, ShortCutDesc};
-    use crate::technique::Wanted;
-    use crate::tiles::{Tiles, TilesDesc, TilesUniform};
-    use crate::uniforms::{
-        LensUniform, LightUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform, ShadowUniform, ViewUniform,
-    };
-
-    fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
-        let desc = ShortCutDesc::default().k(k).ordered(ordered);
-        ShortCut::new(backend, &desc, [64, 64], Format::Rgba16F).unwrap()
-    }
-
-    fn tiles(backend: &mut NullBackend) -> Tiles {
-        Tiles::new(backend, &TilesDesc::default(), [64, 64], Format::Rgba16F).unwrap()
-    }
-
-    #[test]
-    fn structs_are_laid_out_as_in_the_wgsl() {
-        let mut backend = NullBackend::default();
-        let shade = Shade::new(&mut backend, true).unwrap();
-        let ppll = Ppll::new(&mut backend, &PpllDesc::default(), [64, 64], Format::Rgba16F).unwrap();
-        let shortcut = shortcut(&mut backend, 3, false);
-        let [fill, resolve, composite] = ppll.shaders();
-        let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
-        for shader in [&*shade.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
-            shader.check_layout::<ViewUniform>().unwrap();
-            shader.check_layout::<LensUniform>().unwrap();
-            shader.check_layout::<LightUniform>().unwrap();
-        }
-        for shader in [&*shade.open.shader, fill, depths, colors] {
-            shader.check_layout::<SectionUniform>().unwrap();
-        }
-        for shader in [fill, resolve, depths, shortcut_resolve] {
-            shader.check_layout::<Counters>().unwrap();
-        }
-        for shader in [fill, resolve] {
-            shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
-        }
-        let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
-        let [frames @ .., opaque] = shadows.shaders();
-        for shader in frames {
-            shader.check_layout::<ShadowUniform>().unwrap();
-            shader.check_layout::<ShadowFrameUniform>().unwrap();
-        }
-        opaque.check_layout::<OpaqueUniform>().unwrap();
-        let tiles = tiles(&mut backend);
-        let [points, depth, bin, alloc, blend, reopen] = tiles.shaders();
-        for shader in [points, depth, bin, alloc, blend, reopen] {
-            shader.check_layout::<ViewUniform>().unwrap();
-            shader.check_layout::<LensUniform>().unwrap();
-        }
-        points.check_layout::<SectionUniform>().unwrap();
-        blend.check_layout::<Counters>().unwrap();
-        for shader in [depth, bin, alloc, blend, reopen] {
-            shader.check_layout::<TilesUniform>().unwrap();
-        }
-    }
-
-    #[test]
-    fn every_kernel_fits_the_limits_of_webgpu() {
-        let mut backend = NullBackend::default();
-        let shade = Shade::new(&mut backend, true).unwrap();
-        let shade = shade.shadowed.unwrap();
-        for k in K_RANGE {
-            let desc = PpllDesc { k, ..PpllDesc::default() };
-            let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
-            let [fill, resolve, composite] = ppll.shaders();
-            assert_eq!(resolve.features, format!("shaded K={k}"));
-            let counts = [&*shade.shader, fill, resolve, composite].map(|shader| shader.storage_buffers());
-            assert_eq!(counts.into_iter().max(), Some(6), "{counts:?}: what `check` asks for");
-        }
-        for (k, ordered) in ShortCutDesc::K_RANGE.flat_map(|k| [(k, false), (k, true)]) {
-            let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
-            assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
-        }
-        let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
-        assert!(shadows.shaders().into_iter().all(|shader| shader.storage_buffers() <= 5));
-        let counts = tiles(&mut backend).shaders().map(|shader| shader.storage_buffers());
-        assert_eq!(counts.into_iter().max(), Some(8), "{counts:?}: what `check` asks for");
-        let lists = PpllDesc::default().fill(Fill::Raster);
-        let lists = Ppll::new(&mut backend, &lists, [64, 64], Format::Rgba8Srgb).unwrap();
-        let layers = ShortCutDesc::default().fill(Fill::Raster);
-        let layers = ShortCut::new(&mut backend, &layers, [64, 64], Format::Rgba8Srgb).unwrap();
-        for shader in lists.shaders().into_iter().chain(layers.shaders()) {
-            assert!(shader.storage_buffers() <= 7, "{shader:?}");
-            assert_eq!(shader.writes_in_fragments(), shader.label.ends_with("_raster"), "{shader:?}");
-        }
-    }
-
-    #[test]
-    fn depth_of_hair_takes_no_storage_buffer_of_its_own() {
-        let layers = ShortCutDesc::default();
-        let techniques: [Technique; 5] = [
-            PpllDesc::default().into(),
-            PpllDesc::default().cap(8).into(),
-            layers.into(),
-            layers.ordered(true).into(),
-            TilesDesc::default().into(),
-        ];
-        for technique in techniques {
-            let [without, with] = [false, true].map(|hair| {
-                let mut backend = NullBackend::default();
-                technique.make(&mut backend, [64, 64], Output { color: Format::Rgba16F, hair }).unwrap();
-                backend.shaders.iter().map(|shader| (shader.label, shader.storage_buffers())).collect::<Vec<_>>()
-            });
-            assert_eq!(with, without, "{technique:?}");
-        }
-    }
-
-    #[test]
-    fn a_k_out_of_range_is_an_error_that_says_the_range() {
-        let mut backend = NullBackend::default();
-        let mut refused = |technique: Technique| {
-            let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique);
-            HairRenderer::new(&mut backend, &desc).unwrap_err().to_string()
-        };
-        let said = "hair.render.ppll: k is 33, it must be from 0 to 32";
-        assert_eq!(refused(PpllDesc::default().k(33).into()), said);
-        for k in [0, 9] {
-            let said = format!("hair.render.shortcut: k is {k}, it must be from 1 to 8");
-            assert_eq!(refused(ShortCutDesc::default().k(k).into()), said);
-        }
-    }
-
-    #[test]
-    fn a_technique_knows_what_it_takes() {
-        let techniques: [Technique; 4] = [
-            PpllDesc::default().into(),
-            PpllDesc::default().cap(5).into(),
-            ShortCutDesc::default().into(),
-            ShortCutDesc::default().ordered(true).k(8).into(),
-        ];
-        for technique in techniques {
-            for (size, hair) in [[96, 64], [1, 1], [0, 7]].into_iter().flat_map(|size| [(size, false), (size, true)]) {
-                let output = Output { color: Format::Rgba16F, hair };
-                let mut backend = NullBackend::default();
-                let made = technique.make(&mut backend, size, output).unwrap();
-                assert_eq!(made.bytes(), backend.memory().bytes, "{technique:?} at {size:?}");
-            }
-        }
-        let mut backend = NullBackend::default();
-        let mut pool = Ppll::new(&mut backend, &PpllDesc::default(), [96, 64], Format::Rgba16F).unwrap();
-        pool.reserve(&mut backend, Wanted { kept: 100_000, tiles: 0 }, &[]).unwrap();
-        pool.resize(&mut backend, [33, 20]).unwrap();
-        pool.reserve(&mut backend, Wanted { kept: 50_000, tiles: 0 }, &[]).unwrap();
-        assert_eq!(pool.bytes(), backend.memory().bytes);
-    }
-}
+mod tests;

@@ -36,6 +36,9 @@ pub(crate) const SHARED: [Module; 16] = [
 /// The end of a technique with one thread a pixel.
 pub(crate) const PIXELS: Module = ("pixels", include_str!("../shaders/shared/pixels.wgsl"));
 
+/// The triangles of tiles with hair.
+pub(crate) const CORNER: Module = ("corner", include_str!("../shaders/shared/corner.wgsl"));
+
 /// [`SHARED`] and the modules of a technique.
 pub(crate) const fn with_shared<const OWN: usize, const ALL: usize>(own: [Module; OWN]) -> [Module; ALL] {
     assert!(ALL == OWN + SHARED.len());

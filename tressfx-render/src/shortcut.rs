@@ -24,7 +24,7 @@ use crate::composite::Composite;
 use crate::counters::Counters;
 use crate::output::Output;
 use crate::renderer::Targets;
-use crate::resolved::{check_pixels, pixels, tile_count};
+use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, check_k};
@@ -172,6 +172,10 @@ impl TechniqueInstance for ShortCut {
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         self.memory.counters.clear(list, views);
+    }
+
+    fn hairy(&self) -> &Resolved {
+        &self.memory.resolved
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {

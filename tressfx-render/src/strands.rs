@@ -4,14 +4,17 @@ use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, Owner};
 use tressfx_core::error::{Error, Result};
 use tressfx_core::id::{BufferId, TextureId};
+use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
+use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
 use crate::uniforms::{LodUniform, SectionUniform};
+use crate::velocity::Past;
 use crate::views::BoundView;
 
 /// How many segments a prediction samples.
@@ -106,6 +109,8 @@ pub struct ShadedStrands {
     pub(crate) arriving: BufferId,
     /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
+    /// Where the strands were in the frame before, where that is kept.
+    pub(crate) past: Option<Past>,
     owner: Owner,
 }
 
@@ -130,7 +135,39 @@ impl ShadedStrands {
         let ([uniform, colors, arriving], owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
-        Ok(Self { buffers, info, uniform, colors, arriving, sphere, owner })
+        Ok(Self { buffers, info, uniform, colors, arriving, sphere, past: None, owner })
+    }
+
+    /// The same with room for the positions of the frame before, 16 bytes a vertex: for renderers that write the motion of hair, see
+    /// [`RenderDesc::velocity_output`](crate::RenderDesc::velocity_output).
+    ///
+    /// # Errors
+    /// What the backend says when it cannot make a buffer of that size; the strands are freed then.
+    pub fn with_past(self, backend: &mut dyn Backend) -> Result<Self> {
+        match Past::new(backend, &self.buffers) {
+            Ok(past) => Ok(Self { past: Some(past), ..self }),
+            Err(error) => {
+                self.destroy(backend);
+                Err(error)
+            }
+        }
+    }
+
+    /// Ends a frame: writes a copy of the positions, for the motion of the next frame. `pose` is the one that they were drawn with. It comes behind
+    /// the last pass that draws them, and before they are simulated again.
+    ///
+    /// # Errors
+    /// [`DrawError::NoPast`] if the strands have no room for it.
+    pub fn keep_past(&mut self, list: &mut PassList, pose: Pose) -> std::result::Result<(), DrawError> {
+        pose.validate()?;
+        self.past.as_mut().ok_or(DrawError::NoPast)?.keep(list, &self.buffers, pose);
+        Ok(())
+    }
+
+    /// Forgets where the strands were: in the next frame hair moves as the camera does, and by itself not at all. For a groom that has teleported or
+    /// was put to rest (`StepReport::reset`), or that was not drawn in the frame before.
+    pub fn forget_past(&mut self) {
+        self.past.iter_mut().for_each(Past::forget);
     }
 
     /// What the module `strands` of the shaders binds.
@@ -155,8 +192,9 @@ impl ShadedStrands {
         self.arriving
     }
 
-    /// Frees what [`ShadedStrands::new`] made.
+    /// Frees what [`ShadedStrands::new`] and [`ShadedStrands::with_past`] made.
     pub fn destroy(self, backend: &mut dyn Backend) {
+        self.past.into_iter().for_each(|past| past.destroy(backend));
         self.owner.destroy(backend);
     }
 }

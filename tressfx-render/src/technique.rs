@@ -14,6 +14,7 @@ use crate::counters::Counters;
 use crate::output::Output;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::renderer::Targets;
+use crate::resolved::Resolved;
 use crate::shortcut::{ShortCut, ShortCutDesc};
 use crate::strands::SectionDraw;
 use crate::tiles::{Tiles, TilesDesc};
@@ -89,6 +90,9 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
 
     /// Begins a frame with this many views: uploads what is the same for all of them.
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]);
+
+    /// The tiles with hair of the view whose passes were written last.
+    fn hairy(&self) -> &Resolved;
 
     /// Writes the passes of a view.
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()>;

@@ -20,7 +20,7 @@ use crate::counters::Counters;
 use crate::output::Output;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
-use crate::resolved::check_pixels;
+use crate::resolved::{Resolved, check_pixels};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::usage::Usage;
@@ -290,6 +290,10 @@ impl TechniqueInstance for Tiles {
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
         self.memory.begin(list, views);
+    }
+
+    fn hairy(&self) -> &Resolved {
+        &self.memory.screen.resolved
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {

@@ -10,6 +10,7 @@ use crate::lod::Lod;
 use crate::material::Material;
 pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
+pub use crate::velocity::MotionUniform;
 
 gpu_struct! {
     /// One light.

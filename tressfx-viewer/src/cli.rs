@@ -168,6 +168,10 @@ pub(crate) struct Render {
     /// Write how much of each pixel hair covers in the last frame, `1 - transmittance`, as 16-bit gray
     #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
     pub(crate) coverage_out: Option<PathBuf>,
+    /// Write how far the hair of the last frame has moved on the screen since the frame before: to the right as red and down as green, around a
+    /// middle gray; what the largest motion is is printed
+    #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
+    pub(crate) velocity_out: Option<PathBuf>,
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,

@@ -73,6 +73,10 @@ fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output,
     if args.scene.print_passes && last {
         say(passes::table(&list))?;
     }
+    // What the last frame is held against.
+    if args.velocity_out.is_some() && frame + 2 == Run::frames(&args.scene) {
+        studio.keep_past(&mut list, run.sim.pose())?;
+    }
     run.trace.cpu("write the list", frame + 1, start);
     run.submit(&list)?;
     if let Some(counters) = drawn {

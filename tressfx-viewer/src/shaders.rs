@@ -127,6 +127,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
+    let desc = desc.velocity_output(true);
     HairRenderer::new(&mut backend, &desc)?;
     Ok(backend.shaders)
 }

@@ -7,7 +7,7 @@ use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
     Counters, HAIR_FORMAT, HairRenderer, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo,
-    Targets, Technique, ViewDraw,
+    Targets, Technique, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
@@ -17,6 +17,9 @@ use crate::run::Run;
 use crate::stats::RenderStats;
 
 const TARGET: Format = Format::Rgba16F;
+
+/// More than hair moves: pixels without hair.
+pub(crate) const NO_MOTION: f32 = 1e9;
 
 /// Everything that a picture is taken with.
 #[derive(Debug)]
@@ -46,16 +49,21 @@ impl Studio {
         if hair_output {
             targets = targets.hair(texture("hair", HAIR_FORMAT)?);
         }
+        let velocity_output = args.velocity_out.is_some();
+        if velocity_output {
+            targets = targets.velocity(texture("velocity", VELOCITY_FORMAT)?);
+        }
         let mut uploads = PassList::new();
         let opaque: Vec<Mesh> = mesh.into_iter().chain(run.groom.mesh.clone()).collect();
         let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
+            let section = if velocity_output { section.with_past(backend)? } else { section };
             sections.push((section, *run.params.material(index)));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
-        let desc = desc.shadows(args.shadows.desc());
+        let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
@@ -93,10 +101,19 @@ impl Studio {
             // Pixels without hair keep what they have: no coverage.
             list.raster(RasterPass::new("studio.clear_hair").color(hair, Load::Clear([0.0; 4])));
         }
+        if let Some(velocity) = targets.velocity {
+            let no_hair = [NO_MOTION, NO_MOTION, 0.0, 0.0];
+            list.raster(RasterPass::new("studio.clear_velocity").color(velocity, Load::Clear(no_hair)));
+        }
         let sections = draws(&self.sections, pose, view, self.lod.as_ref());
         self.drawn.vertices = sections.iter().map(|section| u64::from(section.vertices())).sum();
         renderer.draw(list, &[ViewDraw::new(view, lights, *targets)], &sections)?;
         Ok(self.renderer.request_counters(list, 0))
+    }
+
+    /// Records what the motion of the next frame is measured from.
+    pub(crate) fn keep_past(&mut self, list: &mut PassList, pose: Pose) -> Result<()> {
+        Ok(self.sections.iter_mut().try_for_each(|(strands, _)| strands.keep_past(list, pose))?)
     }
 
     /// Records the hair once more, for its colours in other light that nothing shades.

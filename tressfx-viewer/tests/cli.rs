@@ -128,6 +128,20 @@ fn depth_and_coverage_are_pictures_of_their_own() {
 }
 
 #[test]
+fn motion_is_a_picture_of_its_own() {
+    let folder = folder("motion");
+    render(&folder, &["--out", "plain.png"]);
+    let text = render(&folder, &["--out", "a.png", "--velocity-out", "motion.png"]);
+    assert!(text.contains("motion.png: motion since the frame before") && text.contains("65535 is"), "{text}");
+    let motion = image::open(folder.join("motion.png")).unwrap().into_rgb16();
+    let hair = motion.pixels().filter(|pixel| pixel.0 != [0; 3]).count();
+    let moved = motion.pixels().filter(|pixel| pixel[0].abs_diff(32_768) > 3000).count();
+    assert!(hair > 300 && moved > 100, "{hair} pixels with hair, {moved} that move");
+    let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert!(read("a.png") == read("plain.png"), "the picture is the same");
+}
+
+#[test]
 fn what_finds_no_room_is_said_and_is_an_error_if_asked_for() {
     let folder = folder("no_room");
     let words = |extra: &[&str]| {
