@@ -123,7 +123,7 @@ impl Clock {
         let simulated = dt - frame.dropped;
         let path = self.path(simulated, last, head);
         let length = self.params.sub_step;
-        let count = ((self.behind + simulated) / length + TOLERANCE).floor() as u32;
+        let count = self.count(simulated);
         for index in 1..=count {
             let into_frame = f64::from(index) * length - self.behind;
             // If the sub-step was made shorter, sub-steps may end before the frame begins, or in a frame of length 0.
@@ -152,6 +152,30 @@ impl Clock {
             false => [None; 2],
         };
         frame
+    }
+
+    /// What [`Clock::advance`] does where the head stands still and nobody asks for the sub-steps.
+    pub fn pass(&mut self, dt: f64) {
+        let Some(head) = self.head else { return };
+        let dt = dt.max(0.0);
+        let dropped = (self.behind + dt - self.params.max_frame).clamp(0.0, dt);
+        let length = self.params.sub_step;
+        let count = self.count(dt - dropped);
+        // As often as there are sub-steps: a product would be rounded in another way.
+        (0..count).for_each(|_| self.time += length);
+        if count > 0 {
+            (self.simulated_head, self.last_sub_step) = (head, length);
+        }
+        self.behind += dt - dropped - f64::from(count) * length;
+        if dt > 0.0 {
+            self.velocities = Some([Vec3::ZERO; 8]);
+        }
+        self.before = if dropped == 0.0 { [Some((head, dt)), self.before[0]] } else { [None; 2] };
+    }
+
+    /// Sub-steps in so many more seconds.
+    fn count(&self, simulated: f64) -> u32 {
+        ((self.behind + simulated) / self.params.sub_step + TOLERANCE).floor() as u32
     }
 
     /// The same where the head is known within the frame too: at even distances in time, it was at these poses before it came

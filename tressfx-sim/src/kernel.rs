@@ -3,6 +3,7 @@
 //! What the kernels of both solvers ask for, and the stages of `tressfx`, are in modules without an entry point.
 
 pub(crate) mod direct;
+pub(crate) mod moved;
 pub(crate) mod roots;
 pub(crate) mod tangents;
 pub(crate) mod tressfx;

@@ -4,6 +4,7 @@
 //! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
 pub mod direct;
+mod moved;
 mod roots;
 mod simulation;
 mod tangents;
@@ -16,6 +17,7 @@ use glam::{DVec3, Vec4};
 use crate::step::Step;
 use roots::RootMotion;
 
+pub use moved::moved;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
 pub use tangents::{follow_strand, tangents};

@@ -6,8 +6,9 @@ use tressfx_core::backend::Backend;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
-use crate::buffers::{CapsuleBuffers, SectionBuffers};
+use crate::buffers::{CapsuleBuffers, SectionBuffers, storage};
 use crate::kernel::direct::direct;
+use crate::kernel::moved::moved;
 use crate::kernel::roots::roots;
 use crate::kernel::tangents::tangents;
 use crate::kernel::tressfx::tressfx;
@@ -81,6 +82,19 @@ impl SimSection {
         }
         self.params = params;
         Ok(())
+    }
+
+    /// What measures how far its guides move.
+    pub(crate) fn measure(
+        &self,
+        backend: &mut dyn Backend,
+        kernels: &mut Kernels,
+        shared: &Shared,
+        largest: BufferId,
+    ) -> Result<Pass> {
+        let vertices = self.info.shape.guide_vertices();
+        let measured = storage(backend, "hair.measured", 16, vertices)?;
+        moved(&mut PassMaker { backend, kernels, buffers: &self.buffers, shared }, measured, largest)
     }
 
     /// Records a stage with one of [`SectionBuffers::steps`]; nothing where the section has no such pass.

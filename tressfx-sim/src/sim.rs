@@ -18,6 +18,7 @@ use crate::kernel::Kernels;
 use crate::params::SimParams;
 use crate::rods::{GpuRods, Standing};
 use crate::section::{Shared, SimSection};
+use crate::sleep::{Measure, MotionTicket, Sleep, SleepParams};
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::Step;
@@ -64,6 +65,8 @@ pub struct StepReport {
     pub reset: bool,
     /// Whether that was because the head teleported.
     pub teleported: bool,
+    /// Whether nothing was recorded because the groom sleeps; see [`HairSim::allow_sleep`].
+    pub asleep: bool,
     /// Time that was not simulated because the frame was too long, s.
     pub dropped: f64,
 }
@@ -87,6 +90,8 @@ pub struct HairSim {
     capsules: CapsuleList,
     /// Of each section.
     standing: Vec<Option<Standing>>,
+    /// Where it may sleep.
+    sleep: Option<Sleep>,
     /// Of everything above.
     owner: Owner,
 }
@@ -134,7 +139,18 @@ impl HairSim {
         }
         let strand_buffers = made.iter().map(|section| section.buffers.strands).collect();
         let capsules = CapsuleList::default();
-        Ok(Self { sections: made, strand_buffers, kernels, shared, clock, resets: 0, capsules, standing, owner })
+        Ok(Self {
+            sections: made,
+            strand_buffers,
+            kernels,
+            shared,
+            clock,
+            resets: 0,
+            capsules,
+            standing,
+            sleep: None,
+            owner,
+        })
     }
 
     /// Records a frame: any number of sub-steps, follow strands and tangents. Sections are recorded stage by stage, so that
@@ -148,6 +164,10 @@ impl HairSim {
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
+        if self.sleeps_on(input) {
+            self.clock.pass(input.dt);
+            return Ok(StepReport { asleep: true, ..StepReport::default() });
+        }
         let plan = self.clock.advance_along(input.dt, input.path, input.head);
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
@@ -159,6 +179,7 @@ impl HairSim {
             sub_steps: plan.sub_steps.len() as u32,
             reset: plan.reset.is_some(),
             teleported: plan.teleported,
+            asleep: false,
             dropped: plan.dropped,
         };
         if report.reset || report.sub_steps > 0 {
@@ -169,6 +190,66 @@ impl HairSim {
         Ok(report)
     }
 
+    /// Lets the groom sleep from now on: once it has come to rest, and as long as the head stands still, colliders, roots and parameters stay the
+    /// same and no wind blows, [`HairSim::step`] records nothing. What changes wakes it in that same frame, and time has gone on. Its strands stay where they
+    /// were measured to be at rest, so that it moves on as one that has never slept but for what that one has moved in the meantime, at less than
+    /// [`SleepParams::speed`]. A groom that is not measured ([`HairSim::request_motion`]) never sleeps.
+    ///
+    /// It takes 16 bytes a guide vertex.
+    ///
+    /// # Errors
+    /// A parameter outside its range, or what the backend says; nothing changes then.
+    pub fn allow_sleep(&mut self, backend: &mut dyn Backend, params: SleepParams) -> Result<(), SimError> {
+        params.validate()?;
+        if let Some(sleep) = &mut self.sleep {
+            sleep.params = params;
+            sleep.wake();
+            return Ok(());
+        }
+        let Self { sections, kernels, shared, owner, .. } = self;
+        let mut compiled = kernels.clone();
+        let measure = owner.change(backend, |backend| {
+            let largest = storage(backend, "hair.moved", 4, 1)?;
+            let mut passes = Vec::with_capacity(sections.len());
+            for section in sections.iter() {
+                passes.push(section.measure(backend, &mut compiled, shared, largest)?);
+            }
+            Ok::<_, tressfx_core::Error>(Measure { passes, largest })
+        })?;
+        *kernels = compiled;
+        self.sleep = Some(Sleep::new(params, measure));
+        Ok(())
+    }
+
+    /// Measures how far strands move, behind [`HairSim::step`] of this frame; every 10 frames or so is often enough. When the bytes have come back, some
+    /// frames later, [`HairSim::measured_motion`] takes them. Nothing is recorded and none comes back of a groom that sleeps, or that may not, or where no time has passed;
+    /// the first measurement after something has changed notes where strands are, and none comes back either.
+    pub fn request_motion(&mut self, list: &mut PassList) -> Option<MotionTicket> {
+        let time = self.clock.time();
+        self.sleep.as_mut()?.request(list, time)
+    }
+
+    /// Takes what [`HairSim::request_motion`] has asked for: four bytes. One from before the last change is not looked at.
+    pub fn measured_motion(&mut self, ticket: &MotionTicket, bytes: [u8; 4]) {
+        self.sleep.iter_mut().for_each(|sleep| sleep.take(ticket, f32::from_le_bytes(bytes)));
+    }
+
+    /// Whether it sleeps.
+    pub fn is_asleep(&self) -> bool {
+        self.sleep.as_ref().is_some_and(Sleep::is_asleep)
+    }
+
+    /// Wakes it for the next frame: for what it cannot know, such as [`HairSim::root_transforms`] that a kernel has written.
+    pub fn wake(&mut self) {
+        self.sleep.iter_mut().for_each(Sleep::wake);
+    }
+
+    /// Whether it sleeps in a frame.
+    fn sleeps_on(&mut self, input: &StepInput) -> bool {
+        self.sleep.iter_mut().for_each(|sleep| sleep.note(input));
+        self.is_asleep()
+    }
+
     /// Says where the roots of a section are at the end of the next frame: a pose a guide, within the space of the rest pose;
     /// the head is applied after it. An identity rides on the head. Guides are in the order of [`Strands::rest`].
     ///
@@ -177,7 +258,7 @@ impl HairSim {
     /// # Errors
     /// A section whose roots ride on the head or that does not exist, another number of poses than guides, and poses that are
     /// not finite or no rotations.
-    pub fn set_roots(&self, list: &mut PassList, section: usize, poses: &[Pose]) -> Result<(), SimError> {
+    pub fn set_roots(&mut self, list: &mut PassList, section: usize, poses: &[Pose]) -> Result<(), SimError> {
         let index = section;
         let Some(section) = self.sections.get(index) else {
             return Err(SimError::NoSection { index, count: self.sections.len() });
@@ -191,6 +272,7 @@ impl HairSim {
         let center = self.clock.center();
         let transforms: Vec<_> = poses.iter().map(|pose| RootTransform::new(center, pose)).collect();
         list.upload(roots.targets, 0, &transforms);
+        self.wake();
         Ok(())
     }
 
@@ -202,6 +284,7 @@ impl HairSim {
 
     /// Puts the strands to rest where the head is, with the next frame.
     pub fn reset(&mut self) {
+        self.wake();
         self.clock.reset();
     }
 
@@ -247,6 +330,7 @@ impl HairSim {
     /// # Errors
     /// A parameter outside its range; nothing changes then.
     pub fn set_clock_params(&mut self, params: ClockParams) -> Result<(), SimError> {
+        self.wake();
         Ok(self.clock.set_params(params)?)
     }
 
@@ -273,6 +357,7 @@ impl HairSim {
         let mut compiled = kernels.clone();
         owner.change(backend, |backend| sections[section].set_params(backend, &mut compiled, params, shared))?;
         *kernels = compiled;
+        self.wake();
         Ok(())
     }
 

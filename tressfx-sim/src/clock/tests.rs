@@ -192,3 +192,17 @@ fn a_teleport_within_a_frame_resets_there_and_what_is_too_long_is_cut() {
     let frame = clock.advance_along(1.0, &[moved(50.0)], moved(100.0));
     assert!((frame.dropped - 0.9).abs() < 1e-9 && !frame.teleported && frame.sub_steps.len() == 12, "{frame:?}");
 }
+
+#[test]
+fn time_passes_over_a_head_that_stands_still_as_it_is_simulated() {
+    let head = Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.3, 1.7, -2.0) };
+    let mut simulated = clock();
+    // Two frames more than the path of the head looks back.
+    (0..4).for_each(|_| drop(simulated.advance(1.0 / 60.0, head)));
+    let mut passed = simulated.clone();
+    for dt in [0.0, 1.0 / 144.0, 1.0 / 60.0, 1.0 / 31.0, 0.0004, 5.0, -1.0, 0.011, 1.0 / 60.0] {
+        simulated.advance(dt, head);
+        passed.pass(dt);
+        assert_eq!(format!("{passed:?}"), format!("{simulated:?}"), "{dt}");
+    }
+}

@@ -102,6 +102,7 @@ impl<'a> Simulation<'a> {
             reset: plan.reset.is_some(),
             teleported: plan.teleported,
             dropped: plan.dropped,
+            asleep: false,
         })
     }
 
