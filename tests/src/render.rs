@@ -56,6 +56,7 @@ impl Groom {
                 fitting_radius: 0.000_1,
                 sample: segments.map(|ends| ([ends[0], ends[1]], [1.0, 1.0])).collect(),
                 bends: Bends::default(),
+                reach: (Vec3::ZERO, f32::INFINITY),
             },
             material,
             pose: Pose::IDENTITY,

@@ -11,6 +11,7 @@ use crate::counters::Counters;
 use crate::draw_error::{DrawError, check_lights, check_section};
 use crate::lights::Lights;
 use crate::output::Output;
+use crate::reach::{self, Drawn};
 use crate::shade::Shade;
 use crate::shadow::{ShadowDesc, Shadows};
 use crate::strands::SectionDraw;
@@ -141,6 +142,8 @@ pub struct HairRenderer {
     shade: Shade,
     order: Box<dyn TechniqueInstance>,
     velocity: Option<Velocity>,
+    /// What the newest frame has drawn.
+    drawn: Drawn,
     /// Frees everything above.
     owner: Owner,
 }
@@ -158,7 +161,7 @@ impl HairRenderer {
             let shade = Shade::new(backend, shadows.is_some())?;
             Ok::<_, Error>((order, velocity, Views::new(backend)?, shadows, shade))
         })?;
-        Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, velocity, owner })
+        Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, velocity, drawn: Drawn::default(), owner })
     }
 
     /// What it was made from.
@@ -192,6 +195,11 @@ impl HairRenderer {
     /// Bytes of the buffers with which the motion of hair is found.
     pub fn velocity_bytes(&self) -> u64 {
         self.velocity.as_ref().map_or(0, Velocity::bytes)
+    }
+
+    /// What the newest frame has drawn and left out.
+    pub fn drawn(&self) -> Drawn {
+        self.drawn
     }
 
     /// Whether tiles draw the next frame: [`Technique::Auto`] may choose them, and lists again.
@@ -281,7 +289,8 @@ impl HairRenderer {
     }
 
     /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is
-    /// written.
+    /// written, nor for a section that no view can see ([`StrandInfo::reach`](crate::StrandInfo::reach)), but for those of the shadows that it may throw on others:
+    /// [`HairRenderer::drawn`] counts them.
     ///
     /// # Errors
     /// [`DrawError`]; nothing is written then.
@@ -294,7 +303,10 @@ impl HairRenderer {
         self.check(views, draws)?;
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
         self.order.check(&draws)?;
-        self.order.begin(list, views.len(), &draws);
+        let (draws, drawn) = reach::split(views, &draws, self.shadows.is_some());
+        let (casting, draws) = (&draws, &draws[..drawn.sections]);
+        self.drawn = drawn;
+        self.order.begin(list, views.len(), draws);
         self.shade.begin();
         self.velocity.iter_mut().for_each(Velocity::begin_frame);
         let cast = self.cast.take();
@@ -305,22 +317,22 @@ impl HairRenderer {
             return Ok(());
         }
         self.views.upload(list, views);
-        draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        casting.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
         // What arrives does not depend on the eye: views in the same light share it.
         let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));
         for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {
             let view = self.views.bound(index, seen.view);
             let is_new = lit.is_none_or(|(lights, _)| lights != seen.lights);
             if let Some(shadows) = self.shadows.as_mut().filter(|_| is_new) {
-                lit = Some((seen.lights, shadows.passes(list, 1 + index, seen.lights, &draws)?));
+                lit = Some((seen.lights, shadows.passes(list, 1 + index, seen.lights, casting)?));
             }
             let is_shadowed = lit.is_some_and(|(_, has_any)| has_any);
-            for draw in &draws {
+            for draw in draws {
                 self.shade.pass(list, &view, draw, is_shadowed)?;
             }
-            self.order.draw(list, &view, &seen.targets, &draws)?;
+            self.order.draw(list, &view, &seen.targets, draws)?;
             if let (Some(velocity), Some(target)) = (&mut self.velocity, seen.targets.velocity) {
-                velocity.passes(list, &view, [seen.targets.depth, target], &draws, self.order.hairy())?;
+                velocity.passes(list, &view, [seen.targets.depth, target], draws, self.order.hairy())?;
             }
         }
         Ok(())

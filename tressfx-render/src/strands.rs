@@ -13,6 +13,7 @@ use tressfx_core::view::Pose;
 use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
+use crate::reach;
 use crate::uniforms::{LodUniform, SectionUniform};
 use crate::velocity::Past;
 use crate::views::BoundView;
@@ -41,6 +42,10 @@ pub struct StrandInfo {
     pub sample: Vec<([Vec3; 2], [f32; 2])>,
     /// How far strands bend away from fewer vertices.
     pub bends: Bends,
+    /// A point of the rest pose and a distance from it, in the unit of the positions, that no strand leaves however its head turns and it swings.
+    /// Sections that no view can see are left out by it. [`StrandInfo::new`] takes roots to ride on the head, and follow strands to spread as the strands say: who
+    /// moves roots away from the head gives more, or an infinite distance, with which a section is always drawn.
+    pub reach: (Vec3, f32),
 }
 
 impl StrandInfo {
@@ -60,6 +65,7 @@ impl StrandInfo {
             fitting_radius: fitting_radius(strands),
             sample,
             bends: Bends::of(strands),
+            reach: reach::of(strands),
         }
     }
 
@@ -109,6 +115,8 @@ pub struct ShadedStrands {
     pub(crate) arriving: BufferId,
     /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
+    /// How far from the centre of the buffers a strand may be.
+    pub(crate) reach: f32,
     /// Where the strands were in the frame before, where that is kept.
     pub(crate) past: Option<Past>,
     owner: Owner,
@@ -135,7 +143,9 @@ impl ShadedStrands {
         let ([uniform, colors, arriving], owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
-        Ok(Self { buffers, info, uniform, colors, arriving, sphere, past: None, owner })
+        // The head turns around the centre of the buffers.
+        let reach = info.reach.0.distance(buffers.center) + info.reach.1;
+        Ok(Self { buffers, info, uniform, colors, arriving, sphere, reach, past: None, owner })
     }
 
     /// The same with room for the positions of the frame before, 16 bytes a vertex: for renderers that write the motion of hair, see

@@ -73,7 +73,8 @@ fn curtain(backend: &mut WgpuBackend, list: &mut PassList, crossings: f32, radiu
     list.upload(buffers.thickness, 0, &vec![1.0f32; 2 * count as usize]);
     let ends = |i: usize| [positions[i], positions[count as usize + i]].map(|[x, y, z, _]| Vec3::new(x, y, z));
     let sample = (0..count as usize).map(|i| (ends(i), [1.0; 2])).collect();
-    (buffers, StrandInfo { metres_per_unit: 1.0, fitting_radius: radius, sample, bends: Bends::default() })
+    let reach = (Vec3::ZERO, f32::INFINITY);
+    (buffers, StrandInfo { metres_per_unit: 1.0, fitting_radius: radius, sample, bends: Bends::default(), reach })
 }
 
 #[test]

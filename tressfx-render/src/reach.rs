@@ -1,0 +1,128 @@
+//! What is left out of a frame: sections that no view can see, on the CPU, before anything is written.
+
+use glam::{DMat4, DVec3, DVec4, Vec3};
+use tressfx_core::backend::DepthOrder;
+use tressfx_core::strands::Strands;
+use tressfx_core::view::View;
+
+use crate::lights::{LightPlace, Lights};
+use crate::strands::SectionDraw;
+use crate::views::ViewDraw;
+
+/// By how much longer than at rest a strand may be: `Solver::TressFx` stretches.
+const STRETCH: f32 = 1.5;
+
+/// Pixels beyond the picture in which something is drawn that reaches into it.
+const MARGIN: f64 = 4.0;
+
+/// Sky is taken by hair that is nearer than so many times the radii of both: beyond that it hides less than 2 % of it.
+const SKY: f64 = 2.0;
+
+/// What a frame has drawn and left out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Drawn {
+    /// Sections that were drawn.
+    pub sections: usize,
+    /// Sections that no view can see: they have no pass but those of the shadows that they throw on others.
+    pub unseen: usize,
+    /// Those of them that throw shadows.
+    pub shading: usize,
+}
+
+/// A point and a distance from it within which strands are, however their head turns and they swing: the roots ride on the head, and a strand is no
+/// longer than [`STRETCH`] times its length.
+pub(crate) fn of(strands: &Strands) -> (Vec3, f32) {
+    let vertices = strands.vertices as usize;
+    let all = strands.rest_of_all();
+    let roots = || all.iter().step_by(vertices).map(|root| root.truncate());
+    let low = roots().fold(Vec3::INFINITY, Vec3::min);
+    let middle = low.midpoint(roots().fold(Vec3::NEG_INFINITY, Vec3::max));
+    let lengths: Vec<f32> = strands.rest_lengths.chunks(vertices).map(|strand| strand.iter().sum()).collect();
+    // Follow strands spread from their guides by this share of their offset.
+    let offset = strands.follow_offsets.iter().map(|offset| offset.truncate().length()).fold(0.0, f32::max);
+    let spread = offset * strands.tip_separation.max(0.0);
+    let reach = roots().enumerate().map(|(i, root)| root.distance(middle) + STRETCH * lengths[i % lengths.len()]);
+    let reach = reach.fold(0.0, f32::max) + spread;
+    if middle.is_finite() && reach.is_finite() { (middle, reach) } else { (Vec3::ZERO, f32::INFINITY) }
+}
+
+/// What holds a section, in the world.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    center: DVec3,
+    radius: f64,
+}
+
+impl Ball {
+    fn of(draw: &SectionDraw) -> Self {
+        let (strands, center) = (draw.strands, draw.pose.translation.as_dvec3());
+        let fibre = strands.info.radius(draw.material) * draw.lod.widening(strands.buffers.shape);
+        Self { center, radius: f64::from(strands.reach) + f64::from(fibre) }
+    }
+
+    /// Whether a view may see any of it.
+    fn is_seen(&self, planes: &[DVec4]) -> bool {
+        // What is no number is not known to be outside.
+        !planes.iter().any(|plane| plane.dot(self.center.extend(1.0)) < -self.radius * plane.truncate().length())
+    }
+
+    /// Whether it may take light from another one.
+    fn shades(&self, other: &Self, lights: &Lights) -> bool {
+        let apart = self.center - other.center;
+        let radii = self.radius + other.radius;
+        let has_sky = lights.sky != Vec3::ZERO || lights.ground != Vec3::ZERO;
+        let is_near = apart.length() <= SKY * radii;
+        is_near && has_sky
+            || lights.lights.iter().filter(|light| light.casts).any(|light| match light.place {
+                LightPlace::Directional { towards } => {
+                    let towards = towards.as_dvec3().normalize_or(DVec3::Y);
+                    apart.distance(towards * apart.dot(towards).max(0.0)) <= radii
+                }
+                LightPlace::Point { position, .. } => {
+                    let way = position.as_dvec3() - other.center;
+                    let along = apart.dot(way) / way.length_squared().max(1e-30);
+                    apart.distance(way * along.clamp(0.0, 1.0)) <= radii
+                }
+            })
+    }
+}
+
+/// The planes beyond which a view sees nothing: the sides of the picture with a margin, and the near plane.
+fn planes(view: &View) -> [DVec4; 5] {
+    let clip: DMat4 = view.projection_matrix().as_dmat4() * view.view_matrix().as_dmat4();
+    let w = clip.row(3);
+    // A perspective may have any scale, an orthographic view any w.
+    let w_sign = if w.truncate() == DVec3::ZERO { w.w.signum() } else { 1.0 };
+    let [x, y, z, w] = [clip.row(0), clip.row(1), clip.row(2), w].map(|row| row * w_sign);
+    let [wide, high] = view.size().map(|side| w * (1.0 + 2.0 * MARGIN / f64::from(side.max(1))));
+    let near = match view.depth() {
+        DepthOrder::Standard => z,
+        DepthOrder::Reverse => w - z,
+    };
+    [wide + x, wide - x, high + y, high - y, near]
+}
+
+/// The sections that a view may see, then those that may throw shadows on these, and how many of each there are.
+pub(crate) fn split<'a>(
+    views: &[ViewDraw],
+    draws: &[SectionDraw<'a>],
+    has_shadows: bool,
+) -> (Vec<SectionDraw<'a>>, Drawn) {
+    let planes: Vec<_> = views.iter().filter(|seen| !seen.view.is_empty()).map(|seen| planes(seen.view)).collect();
+    let is_seen = |draw: &SectionDraw| {
+        let ball = Ball::of(draw);
+        planes.iter().any(|planes| ball.is_seen(planes))
+    };
+    let (mut kept, unseen): (Vec<_>, Vec<_>) = draws.iter().copied().partition(is_seen);
+    let (sections, hidden) = (kept.len(), unseen.len());
+    if has_shadows {
+        let seen: Vec<Ball> = kept.iter().map(Ball::of).collect();
+        kept.extend(unseen.into_iter().filter(|draw| {
+            let ball = Ball::of(draw);
+            seen.iter().any(|other| views.iter().any(|view| ball.shades(other, view.lights)))
+        }));
+    }
+    let shading = kept.len() - sections;
+    (kept, Drawn { sections, unseen: hidden, shading })
+}
