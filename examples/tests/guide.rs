@@ -20,7 +20,7 @@ use tressfx_render::{
     Fill, HairRenderer, Light, Lights, LodDesc, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
     ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
-use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
 
 use table::{GUIDE, Row, rows, words};
 
@@ -156,6 +156,8 @@ fn everything() -> PassList {
     for head in [Pose::IDENTITY, turned] {
         sim.step(&mut list, &StepInput::new(1.0 / 60.0, head).with_colliders(&colliders).with_wind(wind)).unwrap();
     }
+    sim.allow_sleep(&mut backend, SleepParams::default()).unwrap();
+    sim.request_motion(&mut list);
     let size = [64, 64];
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();

@@ -61,10 +61,17 @@ impl Ball {
         Self { center, radius: f64::from(strands.reach) + f64::from(fibre) }
     }
 
+    /// One that holds all of these, if there are any.
+    fn around(balls: &[Self]) -> Option<Self> {
+        let low = balls.iter().map(|ball| ball.center - ball.radius).reduce(DVec3::min)?;
+        let high = balls.iter().map(|ball| ball.center + ball.radius).reduce(DVec3::max)?;
+        Some(Self { center: low.midpoint(high), radius: 0.5 * low.distance(high) })
+    }
+
     /// Whether a view may see any of it.
     fn is_seen(&self, planes: &[DVec4]) -> bool {
         // What is no number is not known to be outside.
-        !planes.iter().any(|plane| plane.dot(self.center.extend(1.0)) < -self.radius * plane.truncate().length())
+        !planes.iter().any(|plane| plane.dot(self.center.extend(1.0)) < -self.radius)
     }
 
     /// Whether it may take light from another one.
@@ -100,7 +107,8 @@ fn planes(view: &View) -> [DVec4; 5] {
         DepthOrder::Standard => z,
         DepthOrder::Reverse => w - z,
     };
-    [wide + x, wide - x, high + y, high - y, near]
+    // Distances from them are in the unit of the world.
+    [wide + x, wide - x, high + y, high - y, near].map(|plane| plane / plane.truncate().length())
 }
 
 /// The sections that a view may see, then those that may throw shadows on these, and how many of each there are.
@@ -110,18 +118,23 @@ pub(crate) fn split<'a>(
     has_shadows: bool,
 ) -> (Vec<SectionDraw<'a>>, Drawn) {
     let planes: Vec<_> = views.iter().filter(|seen| !seen.view.is_empty()).map(|seen| planes(seen.view)).collect();
-    let is_seen = |draw: &SectionDraw| {
+    let (mut kept, mut seen, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+    for draw in draws {
         let ball = Ball::of(draw);
-        planes.iter().any(|planes| ball.is_seen(planes))
-    };
-    let (mut kept, unseen): (Vec<_>, Vec<_>) = draws.iter().copied().partition(is_seen);
+        if planes.iter().any(|planes| ball.is_seen(planes)) {
+            kept.push(*draw);
+            seen.push(ball);
+        } else {
+            unseen.push((draw, ball));
+        }
+    }
     let (sections, hidden) = (kept.len(), unseen.len());
-    if has_shadows {
-        let seen: Vec<Ball> = kept.iter().map(Ball::of).collect();
-        kept.extend(unseen.into_iter().filter(|draw| {
-            let ball = Ball::of(draw);
-            seen.iter().any(|other| views.iter().any(|view| ball.shades(other, view.lights)))
-        }));
+    if let Some(around) = Ball::around(&seen).filter(|_| has_shadows) {
+        let shades = |ball: &Ball, other: &Ball| views.iter().any(|view| ball.shades(other, view.lights));
+        // Most shade nothing of what is seen.
+        let near = unseen.into_iter().filter(|(_, ball)| shades(ball, &around));
+        let shading = near.filter(|(_, ball)| seen.iter().any(|other| shades(ball, other)));
+        kept.extend(shading.map(|(draw, _)| *draw));
     }
     let shading = kept.len() - sections;
     (kept, Drawn { sections, unseen: hidden, shading })

@@ -13,7 +13,7 @@ use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
 use tressfx_render::{HairRenderer, RenderDesc};
-use tressfx_sim::{HairSim, SectionDesc, SimParams};
+use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams};
 
 use crate::cli;
 use crate::groom::Groom;
@@ -124,7 +124,8 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let params = SimParams { sag_free: 0.0, ..params.sim(0).clone() };
     let section = SectionDesc::new(&groom.sections[0], params).with_solver(args.solver.solver());
     let sections = [section.clone(), section.with_own_roots()];
-    HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
+    let mut sim = HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
+    sim.allow_sleep(&mut backend, SleepParams::default())?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
     let desc = desc.velocity_output(true);
