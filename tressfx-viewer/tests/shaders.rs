@@ -160,6 +160,7 @@ fn labels_of_kernels() -> BTreeSet<String> {
         ("render", "shaders/shadow"),
         ("render", "shaders/shortcut"),
         ("render", "shaders/tiles"),
+        ("render", "shaders/velocity"),
     ];
     for (group, folder) in folders {
         let folder = format!("{}/../tressfx-{group}/{folder}", env!("CARGO_MANIFEST_DIR"));
