@@ -83,7 +83,8 @@ fn an_unseen_groom_throws_its_shadow_and_one_that_throws_none_changes_nothing() 
     assert!(draw(&mut some, behind, true) == lit);
     assert_eq!([some.renderer.drawn().unseen, some.renderer.drawn().shading], [1, 0]);
     // A point light that stands between them.
-    let point = Light { place: LightPlace::Point { position: Vec3::X * 3.0, reach: 4.0 }, ..lights(0.0).lights[0] };
+    let point =
+        Light { place: LightPlace::Point { position: Vec3::X * 3.0, reach: 4.0, cone: None }, ..lights(0.0).lights[0] };
     some.lights.lights = vec![point];
     draw(&mut some, beside, true);
     assert_eq!(some.renderer.drawn().shading, 0);
