@@ -2,8 +2,9 @@
 // they cover and however often.
 
 import package::grid::{GROUP, thread_index};
-import package::lighting::{Fibre, scatter};
+@if(!fibre) import package::lighting::{Fibre, scatter, under_sky};
 import package::ribbon::is_sound;
+@if(fibre) import package::scattering::{Fibre, scatter, under_sky};
 import package::section::{SectionUniform, strand_random};
 import package::view::{ViewUniform, towards, towards_eye};
 
@@ -55,13 +56,26 @@ fn around(open: vec4<f32>) -> vec3<f32> {
 fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     let eye = unit(towards_eye(view.eye, point));
     var shares = arriving_at(i);
-    var sum = around(shares.sky) * fibre.albedo;
+    var sum = around(shares.sky) * under_sky(fibre, eye);
     for (var light = 0u; light < view.light_count; light++) {
         let from_light = towards(view.lights[light], point);
         let arrives = from_light.w * mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
         sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz);
     }
     return sum;
+}
+
+// What a fibre is made of: `shade` is from -1 to 1, a strand that is darker or brighter than others.
+@if(!fibre)
+fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
+    let albedo = mix(section.base, section.tip, along).rgb * (1.0 + section.variation * shade);
+    return Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+}
+
+@if(fibre)
+fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
+    let absorption = mix(section.absorption, section.tip_absorption, along).rgb * (1.0 - section.variation * shade);
+    return Fibre(tangent, tilt, absorption, section.variance);
 }
 
 @compute @workgroup_size(GROUP)
@@ -77,13 +91,12 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
-    let paint = mix(section.base, section.tip, along);
-    let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
-    let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+    let fibre = fibre_at(tangent, tilt, strand_random(strand, guide, 0u), along);
+    let opacity = mix(section.base.a, section.tip.a, along);
     var color = clamp(skin * lit(point, fibre, i), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);
     }
-    colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
+    colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, opacity)));
 }

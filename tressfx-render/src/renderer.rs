@@ -267,6 +267,7 @@ impl HairRenderer {
         }
         self.views.upload(list, views);
         draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        draws.iter().for_each(|draw| self.shade.upload(list, draw));
         // What arrives does not depend on the eye: views in the same light share it.
         let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));
         for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {
@@ -277,7 +278,7 @@ impl HairRenderer {
             }
             let is_shadowed = lit.is_some_and(|(_, has_any)| has_any);
             for draw in &draws {
-                self.shade.pass(list, &view, draw.strands, is_shadowed)?;
+                self.shade.pass(list, &view, draw, is_shadowed)?;
             }
             self.order.draw(list, &view, &seen.targets, &draws)?;
         }
@@ -350,12 +351,12 @@ mod tests {
         let shortcut = shortcut(&mut backend, 3, false);
         let [fill, resolve, composite] = ppll.shaders();
         let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
-        for shader in [&*shade.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
+        for shader in [&*shade.kajiya.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
             shader.check_layout::<ViewUniform>().unwrap();
             shader.check_layout::<LensUniform>().unwrap();
             shader.check_layout::<LightUniform>().unwrap();
         }
-        for shader in [&*shade.open.shader, fill, depths, colors] {
+        for shader in [&*shade.kajiya.open.shader, &shade.fibre.open.shader, fill, depths, colors] {
             shader.check_layout::<SectionUniform>().unwrap();
         }
         for shader in [fill, resolve, depths, shortcut_resolve] {
@@ -388,7 +389,8 @@ mod tests {
     fn every_kernel_fits_the_limits_of_webgpu() {
         let mut backend = NullBackend::default();
         let shade = Shade::new(&mut backend, true).unwrap();
-        let shade = shade.shadowed.unwrap();
+        assert!(shade.kajiya.shadowed.unwrap().shader.storage_buffers() == 4);
+        let shade = shade.fibre.shadowed.unwrap();
         for k in K_RANGE {
             let desc = PpllDesc { k, ..PpllDesc::default() };
             let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();

@@ -10,6 +10,7 @@ use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
 use crate::material::Material;
+use crate::scattering::ENTRIES;
 use crate::uniforms::SectionUniform;
 use crate::views::BoundView;
 
@@ -96,6 +97,8 @@ pub struct ShadedStrands {
     pub(crate) colors: BufferId,
     /// `vec4<u32>` a vertex of every strand: what arrives of the sky and of each light, see `shadow_light.wgsl`.
     pub(crate) arriving: BufferId,
+    /// What shaders look up of a fibre that scatters as glass.
+    pub(crate) fibre_table: BufferId,
     /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
     owner: Owner,
@@ -117,12 +120,13 @@ impl ShadedStrands {
                 backend.create_buffer(&uniform)?,
                 backend.create_buffer(&BufferDesc::storage("hair.render.colors", colors))?,
                 backend.create_buffer(&BufferDesc::storage("hair.render.arriving", arriving))?,
+                backend.create_buffer(&BufferDesc::storage("hair.render.fibre_table", 16 * ENTRIES as u64))?,
             ])
         });
-        let ([uniform, colors, arriving], owner) = made?;
+        let ([uniform, colors, arriving, fibre_table], owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
-        Ok(Self { buffers, info, uniform, colors, arriving, sphere, owner })
+        Ok(Self { buffers, info, uniform, colors, arriving, fibre_table, sphere, owner })
     }
 
     /// What the module `strands` of the shaders binds.

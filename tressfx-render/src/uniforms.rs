@@ -7,6 +7,7 @@ use tressfx_core::view::{Pose, View};
 
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::material::Material;
+use crate::scattering::variances;
 pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
 
@@ -115,10 +116,14 @@ gpu_struct! {
         pub root_extent: f32,
         /// The share of light that a fibre takes on its way to others.
         pub shadow_alpha: f32,
+        /// Variance of the lobe that a fibre mirrors into, where it scatters as glass.
+        pub variance: f32,
         /// Nothing.
-        pub unused: u32,
-        /// Nothing.
-        pub unused_too: [u32; 2],
+        pub unused: [u32; 2],
+        /// Absorption in a radius of the fibre at the root, and 0.
+        pub absorption: [f32; 4],
+        /// At the tip.
+        pub tip_absorption: [f32; 4],
     }
 }
 
@@ -186,7 +191,9 @@ impl ViewUniform {
 impl SectionUniform {
     /// What the shaders are given for a section.
     pub fn new(shape: StrandShape, info: &StrandInfo, material: &Material, pose: &Pose) -> Self {
-        let Material { base_color, tip_color, primary, secondary, .. } = *material;
+        let Material { primary, secondary, .. } = *material;
+        let ([base_color, tip_color], [absorption, tip_absorption]) = (material.colors(), material.absorptions());
+        let roughness = material.fibre.map_or(0.0, |fibre| fibre.roughness);
         let matrix: Mat4 = pose.matrix();
         Self {
             pose: matrix.to_cols_array_2d(),
@@ -207,8 +214,10 @@ impl SectionUniform {
             root_shade: material.root_shade,
             root_extent: material.root_extent,
             shadow_alpha: material.shadow_alpha,
-            unused: 0,
-            unused_too: [0; 2],
+            variance: variances(f64::from(roughness))[0] as f32,
+            unused: [0; 2],
+            absorption: with(absorption, 0.0),
+            tip_absorption: with(tip_absorption, 0.0),
         }
     }
 }

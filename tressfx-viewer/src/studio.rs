@@ -51,7 +51,7 @@ impl Studio {
         let mut sections = Vec::new();
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
-            sections.push((section, *run.params.material(index)));
+            sections.push((section, material(args, *run.params.material(index))));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         let desc = desc.shadows(args.shadows.desc());
@@ -137,6 +137,18 @@ impl Studio {
         self.take_stock(run, counters)?;
         run.fetch(picture)
     }
+}
+
+/// The look of a section, with what was asked for.
+fn material(args: &Render, material: Material) -> Material {
+    let material = args.look.map_or(material, |look| look.on(material));
+    let fibre = match args.scattering {
+        None => material.fibre,
+        Some(cli::Scattering::Kajiya) => None,
+        Some(cli::Scattering::Fibre) => Some(material.fibre.unwrap_or_default()),
+    };
+    let [base_color, tip_color] = material.colors();
+    material.with(|m| (m.fibre, m.base_color, m.tip_color) = (fibre, base_color, tip_color))
 }
 
 fn draws(sections: &[(ShadedStrands, Material)], pose: Pose) -> Vec<SectionDraw<'_>> {

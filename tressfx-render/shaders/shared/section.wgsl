@@ -24,8 +24,11 @@ struct SectionUniform {
     root_extent: f32,
     // The share of light that a fibre takes on its way to others.
     shadow_alpha: f32,
-    unused: u32,
-    unused_too: vec2<u32>,
+    // Of a fibre that scatters as glass: the variance of the lobe that it mirrors into, and what a radius of it takes at the root and at the tip.
+    variance: f32,
+    unused: vec2<u32>,
+    absorption: vec4<f32>,
+    tip_absorption: vec4<f32>,
 }
 
 // A number in [0, 1) that looks random, the same on every device: PCG-RXS-M-XS.
