@@ -2,9 +2,9 @@
 // they cover and however often.
 
 import package::grid::{GROUP, thread_index};
-@if(!fibre) import package::lighting::{Fibre, scatter, under_sky};
+@if(!fibre) import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
-@if(fibre) import package::scattering::{Fibre, scatter, under_sky};
+@if(fibre) import package::scattering::{Fibre, fibres, scatter, under_sky};
 import package::section::{SectionUniform, strand_random};
 import package::view::{ViewUniform, towards, towards_eye};
 
@@ -19,6 +19,9 @@ import package::view::{ViewUniform, towards, towards_eye};
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
+// Less light than the smallest share that is told from none comes through no hair, and less light of the sky keeps its colour.
+const DARK: f32 = 4e-6;
+const DARKEST_SKY: f32 = 1e-3;
 
 fn posed(i: u32) -> vec3<f32> {
     return (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
@@ -56,11 +59,21 @@ fn around(open: vec4<f32>) -> vec3<f32> {
 fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     let eye = unit(towards_eye(view.eye, point));
     var shares = arriving_at(i);
-    var sum = around(shares.sky) * under_sky(fibre, eye);
+    var sum = around(shares.sky);
+    @if(!fibre) { sum *= fibre.albedo; }
+    @if(fibre) {
+        let open = clamp(mix(1.0, shares.sky.w, section.self_shadow), DARKEST_SKY, 1.0);
+        sum *= under_sky(fibre, eye, fibres(open, section.shadow_alpha)) / open;
+    }
     for (var light = 0u; light < view.light_count; light++) {
         let from_light = towards(view.lights[light], point);
-        let arrives = from_light.w * mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
-        sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz);
+        let share = mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
+        @if(!fibre) { sum += view.lights[light].color.rgb * (from_light.w * share) * scatter(fibre, eye, from_light.xyz); }
+        @if(fibre) {
+            let behind = fibres(max(share, DARK), section.shadow_alpha);
+            let arrives = select(from_light.w, 0.0, share < DARK);
+            sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz, behind);
+        }
     }
     return sum;
 }
@@ -75,7 +88,7 @@ fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
 @if(fibre)
 fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
     let absorption = mix(section.absorption, section.tip_absorption, along).rgb * (1.0 - section.variation * shade);
-    return Fibre(tangent, tilt, absorption, section.variance);
+    return Fibre(tangent, tilt, absorption, section.variance, section.multiple);
 }
 
 @compute @workgroup_size(GROUP)

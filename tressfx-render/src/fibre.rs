@@ -17,7 +17,7 @@ pub enum Pigment {
     Color,
     /// The pigments of hair, in parts of 0 to 100, with the absorptions of Donner and Jensen 2006; root and tip are alike.
     Melanin {
-        /// Brown to black: 0.3 blond, 1.3 brown, 8 black.
+        /// Brown to black.
         eumelanin: f32,
         /// Yellow to red.
         pheomelanin: f32,
@@ -37,12 +37,14 @@ pub struct FibreScattering {
     pub roughness: f32,
     /// How wide they are around it, 0 to 1; below 0.18 it is as at 0.18.
     pub azimuthal_roughness: f32,
+    /// How much is seen of the light that fibres behind a fibre give back, 0 to 1: 0 is a fibre that is alone, 1 endless hair.
+    pub multiple: f32,
 }
 
 impl Default for FibreScattering {
     /// Human hair, with the colours of its material.
     fn default() -> Self {
-        Self { pigment: Pigment::Color, roughness: 0.3, azimuthal_roughness: 0.3 }
+        Self { pigment: Pigment::Color, roughness: 0.3, azimuthal_roughness: 0.3, multiple: 0.7 }
     }
 }
 
@@ -54,7 +56,7 @@ impl FibreScattering {
     }
 
     /// Names, values and ranges.
-    pub(crate) fn checks(&self) -> [(&'static str, f32, RangeInclusive<f32>); 5] {
+    pub(crate) fn checks(&self) -> [(&'static str, f32, RangeInclusive<f32>); 6] {
         let (eumelanin, pheomelanin, absorption) = match self.pigment {
             Pigment::Color => (0.0, 0.0, Vec3::ZERO),
             Pigment::Melanin { eumelanin, pheomelanin } => (eumelanin, pheomelanin, Vec3::ZERO),
@@ -67,6 +69,7 @@ impl FibreScattering {
             ("fibre.pigment.absorption", absorption, 0.0..=MAX_ABSORPTION),
             ("fibre.roughness", self.roughness, 0.0..=1.0),
             ("fibre.azimuthal_roughness", self.azimuthal_roughness, 0.0..=1.0),
+            ("fibre.multiple", self.multiple, 0.0..=1.0),
         ]
     }
 }

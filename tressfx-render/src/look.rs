@@ -36,13 +36,18 @@ const fn melanin(eumelanin: f32, pheomelanin: f32) -> Pigment {
 impl Look {
     /// Natural colours from the brightest to the darkest, and what is none.
     pub const ALL: [Self; 6] = [
-        Self::natural("blond", "golden blond", melanin(0.18, 0.25), [0.3, 0.3, 0.12]),
-        Self::natural("red", "copper red", melanin(0.2, 1.4), [0.3, 0.3, 0.15]),
-        Self::natural("brown", "chestnut brown", melanin(1.1, 0.25), [0.28, 0.35, 0.2]),
-        Self::natural("black", "black", melanin(6.0, 0.0), [0.25, 0.3, 0.3]),
-        Self::natural("grey", "grey: white hair among dark", melanin(0.35, 0.0), [0.32, 1.0, 0.12]),
+        Self::natural("blond", "golden blond", melanin(0.05, 0.08), [0.3, 0.3, 0.12]),
+        Self::natural("red", "copper red", melanin(0.15, 1.6), [0.3, 0.3, 0.15]),
+        Self::natural("brown", "chestnut brown", melanin(1.3, 0.2), [0.28, 0.35, 0.2]),
+        Self::natural("black", "black", melanin(8.0, 0.0), [0.25, 0.3, 0.3]),
+        Self::natural(
+            "grey",
+            "grey: white hair among dark",
+            Pigment::Absorption(Vec3::new(0.16, 0.17, 0.18)),
+            [0.32, 1.0, 0.12],
+        ),
         Self {
-            colors: Some([Vec3::new(0.05, 0.25, 0.6), Vec3::new(0.1, 0.55, 0.7)]),
+            colors: Some([Vec3::new(0.02, 0.1, 0.4), Vec3::new(0.04, 0.35, 0.5)]),
             ..Self::natural("dyed", "dyed blue, turquoise at the tips", Pigment::Color, [0.3, 0.25, 0.15])
         },
     ];
@@ -59,8 +64,7 @@ impl Look {
     /// The same material with this look.
     #[must_use]
     pub fn on(&self, material: Material) -> Material {
-        let azimuthal_roughness = FibreScattering::default().azimuthal_roughness;
-        let fibre = FibreScattering { pigment: self.pigment, roughness: self.roughness, azimuthal_roughness };
+        let fibre = FibreScattering { pigment: self.pigment, roughness: self.roughness, ..FibreScattering::default() };
         let Self { variation, shadow_alpha, .. } = *self;
         let [base_color, tip_color] = self.colors.unwrap_or([material.base_color, material.tip_color]);
         let made = Material { fibre: Some(fibre), base_color, tip_color, variation, shadow_alpha, ..material };

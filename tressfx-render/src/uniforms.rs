@@ -118,8 +118,10 @@ gpu_struct! {
         pub shadow_alpha: f32,
         /// Variance of the lobe that a fibre mirrors into, where it scatters as glass.
         pub variance: f32,
+        /// How much of what the fibres behind it give back is seen.
+        pub multiple: f32,
         /// Nothing.
-        pub unused: [u32; 2],
+        pub unused: u32,
         /// Absorption in a radius of the fibre at the root, and 0.
         pub absorption: [f32; 4],
         /// At the tip.
@@ -215,7 +217,8 @@ impl SectionUniform {
             root_extent: material.root_extent,
             shadow_alpha: material.shadow_alpha,
             variance: variances(f64::from(roughness))[0] as f32,
-            unused: [0; 2],
+            multiple: material.fibre.map_or(0.0, |fibre| fibre.multiple),
+            unused: 0,
             absorption: with(absorption, 0.0),
             tip_absorption: with(tip_absorption, 0.0),
         }

@@ -27,11 +27,6 @@ fn lobe(cosine: f32, term: vec2<f32>) -> f32 {
     return term.x * pow(max(cosine, 1e-6), term.y);
 }
 
-// Radiance in light of radiance 1 from everywhere.
-fn under_sky(fibre: Fibre, eye: vec3<f32>) -> vec3<f32> {
-    return fibre.albedo;
-}
-
 // Radiance towards `eye` of a fibre in white light from `light`.
 fn scatter(fibre: Fibre, eye: vec3<f32>, light: vec3<f32>) -> vec3<f32> {
     let along_light = dot(fibre.tangent, light);

@@ -26,7 +26,9 @@ struct SectionUniform {
     shadow_alpha: f32,
     // Of a fibre that scatters as glass: the variance of the lobe that it mirrors into, and what a radius of it takes at the root and at the tip.
     variance: f32,
-    unused: vec2<u32>,
+    // How much of what fibres behind it give back is seen.
+    multiple: f32,
+    unused: u32,
     absorption: vec4<f32>,
     tip_absorption: vec4<f32>,
 }

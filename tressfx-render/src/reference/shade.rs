@@ -26,6 +26,7 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
             tilt,
             absorption: xyz(&of.absorption).lerp(xyz(&of.tip_absorption), along) * (1.0 - differs),
             variances: [1.0, 0.25, 4.0, 4.0].map(|factor| factor * f64::from(of.variance)),
+            multiple: f64::from(of.multiple),
             table,
         }),
         None => Fibre::Kajiya(Kajiya {
@@ -41,7 +42,7 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
     let point = strands.posed(index);
     let arriving = strands.arriving.map_or(Arriving::ALL, |arriving| arriving[index]);
     let eye = Projection::new(view).towards_eye(point);
-    let color = skin * lit(lights, f64::from(of.self_shadow), point, eye, &fibre, &arriving);
+    let color = skin * lit(lights, [of.self_shadow, of.shadow_alpha].map(f64::from), point, eye, &fibre, &arriving);
     color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
 }
 
@@ -52,20 +53,32 @@ enum Fibre<'a> {
 }
 
 impl Fibre<'_> {
-    fn scatter(&self, eye: DVec3, light: DVec3) -> DVec3 {
+    /// The radiance in light of which the share `share` arrives.
+    fn scatter(&self, eye: DVec3, light: DVec3, share: f64, alpha: f64) -> DVec3 {
         match self {
-            Self::Kajiya(fibre) => fibre.scatter(eye, light),
-            Self::Glass(fibre) => fibre.scatter(eye, light),
+            Self::Kajiya(fibre) => share * fibre.scatter(eye, light),
+            Self::Glass(_) if share < DARK => DVec3::ZERO,
+            Self::Glass(fibre) => fibre.scatter(eye, light, scatter::fibres(share, alpha)),
         }
     }
 
-    fn under_sky(&self, eye: DVec3) -> DVec3 {
+    /// What the light of the sky is multiplied with, of which the share `share` has arrived.
+    fn under_sky(&self, eye: DVec3, share: f64, alpha: f64) -> DVec3 {
         match self {
             Self::Kajiya(fibre) => fibre.albedo,
-            Self::Glass(fibre) => fibre.under_sky(eye),
+            Self::Glass(fibre) => {
+                let share = share.clamp(DARKEST_SKY, 1.0);
+                fibre.under_sky(eye, scatter::fibres(share, alpha)) / share
+            }
         }
     }
 }
+
+/// Less light than the smallest share that is told from none comes through no hair.
+const DARK: f64 = 4e-6;
+
+/// Less light of the sky than this keeps its colour.
+const DARKEST_SKY: f64 = 1e-3;
 
 struct Kajiya {
     tangent: DVec3,
@@ -76,14 +89,22 @@ struct Kajiya {
     secondary: DVec2,
 }
 
-fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibre, arriving: &Arriving) -> DVec3 {
+fn lit(
+    lights: &Lights,
+    [self_shadow, alpha]: [f64; 2],
+    point: DVec3,
+    eye: DVec3,
+    fibre: &Fibre,
+    arriving: &Arriving,
+) -> DVec3 {
     let [sky, ground] = [lights.sky, lights.ground].map(|light| light.as_dvec3());
     let (mean, slope) = (0.5 * (sky + ground), 0.5 * (sky - ground));
     let around = mean.lerp(arriving.sky.w * mean + arriving.sky.y / 3.0 * slope, self_shadow).max(DVec3::ZERO);
-    lights.lights.iter().zip(arriving.lights).fold(around * fibre.under_sky(eye), |sum, (light, share)| {
+    let of_sky = around * fibre.under_sky(eye, 1.0 + self_shadow * (arriving.sky.w - 1.0), alpha);
+    lights.lights.iter().zip(arriving.lights).fold(of_sky, |sum, (light, share)| {
         let (towards, strength) = towards(light, point);
-        let strength = strength * (1.0 + self_shadow * (share - 1.0));
-        sum + light.color.as_dvec3() * strength * fibre.scatter(eye, towards)
+        let share = 1.0 + self_shadow * (share - 1.0);
+        sum + light.color.as_dvec3() * strength * fibre.scatter(eye, towards, share, alpha)
     })
 }
 

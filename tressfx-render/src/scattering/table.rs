@@ -18,7 +18,7 @@ const ROWS: usize = 16;
 /// Entries over the angle between a direction and the tangent.
 const POLES: usize = 64;
 /// Entries of the buffer, 16 bytes each.
-pub(crate) const ENTRIES: usize = COLUMNS * ROWS + POLES;
+pub(crate) const ENTRIES: usize = COLUMNS * ROWS + POLES + 2 * ROWS;
 
 /// Angles that integrals along the fibre are made of.
 const ANGLES: usize = 192;
@@ -51,6 +51,9 @@ pub struct FibreTable {
     /// Row by row.
     around: Vec<Entry>,
     along: Vec<Entry>,
+    /// By cosine of `theta_d`, in pairs: how much light of each lobe of a white fibre goes on and how much comes back; and the radii that
+    /// light of the last three goes within it, from the fourth number on.
+    passed: Vec<Entry>,
 }
 
 /// A place in the table for an angle from 0 to PI, 0 to 1: `s / (s + c)` with sine and cosine of its half. It needs no inverse function and is
@@ -110,6 +113,7 @@ impl FibreTable {
         let width = detector_width(f64::from(shape.azimuthal_roughness));
         let weights = weights();
         let (mut around, mut shares) = (Vec::with_capacity(COLUMNS * ROWS), Vec::with_capacity(ROWS));
+        let mut passed = Vec::with_capacity(2 * ROWS);
         for row in 0..ROWS {
             let across = Across::new(row as f64 / (ROWS - 1) as f64);
             let all = [0.0, MEASURED].map(|absorption| across.shares(absorption));
@@ -122,9 +126,15 @@ impl FibreTable {
             });
             let scaled = |lobes: &[f64; LOBES]| std::array::from_fn(|p| lobes[p] * scale[p]);
             around.extend(lobes.iter().map(|[white, left]| entry(scaled(white), scaled(left), 0.0)));
+            let on: [f64; LOBES] = std::array::from_fn(|p| {
+                let behind = lobes.iter().zip(weights).skip(COLUMNS / 2);
+                2.0 * scale[p] * behind.map(|(lobes, weight)| lobes[0][p] * weight).sum::<f64>()
+            });
+            passed.push(std::array::from_fn(|i| if i < LOBES { on[i] } else { all[0][i - LOBES] - on[i - LOBES] }));
+            passed.push(entry(all[0], all[1], 0.0));
             shares.push(all);
         }
-        Self { around, along: along(shape, &shares) }
+        Self { around, along: along(shape, &shares), passed }
     }
 
     /// What is seen around the fibre at an angle between light and eye.
@@ -144,13 +154,19 @@ impl FibreTable {
         mix(&self.along[first], &self.along[first + 1], share)
     }
 
+    /// How much of each lobe goes on and comes back, and the radii of the last three.
+    pub(crate) fn passed(&self, cos_theta_d: f64) -> [Entry; 2] {
+        let (row, share) = between(cos_theta_d, ROWS);
+        [0, 1].map(|i| mix(&self.passed[2 * row + i], &self.passed[2 * row + 2 + i], share))
+    }
+
     /// As the shader reads it.
     pub(crate) fn packed(&self) -> Vec<[u32; 4]> {
         let pair = |entry: &Entry, i: usize| {
             let [low, high] = [entry[2 * i], entry[2 * i + 1]].map(|x| u32::from(f16::from_f64(x).to_bits()));
             low | (high << 16)
         };
-        let entries = self.around.iter().chain(&self.along);
+        let entries = self.around.iter().chain(&self.along).chain(&self.passed);
         entries.map(|entry| std::array::from_fn(|i| pair(entry, i))).collect()
     }
 }
