@@ -36,9 +36,9 @@ const fn melanin(eumelanin: f32, pheomelanin: f32) -> Pigment {
 impl Look {
     /// Natural colours from the brightest to the darkest, and what is none.
     pub const ALL: [Self; 6] = [
-        Self::natural("blond", "golden blond", melanin(0.05, 0.08), [0.3, 0.3, 0.12]),
-        Self::natural("red", "copper red", melanin(0.15, 1.6), [0.3, 0.3, 0.15]),
-        Self::natural("brown", "chestnut brown", melanin(1.3, 0.2), [0.28, 0.35, 0.2]),
+        Self::natural("blond", "golden blond", melanin(0.06, 0.1), [0.3, 0.3, 0.12]),
+        Self::natural("red", "copper red", melanin(0.05, 1.4), [0.3, 0.3, 0.15]),
+        Self::natural("brown", "chestnut brown", melanin(1.1, 0.2), [0.28, 0.35, 0.2]),
         Self::natural("black", "black", melanin(8.0, 0.0), [0.25, 0.3, 0.3]),
         Self::natural(
             "grey",

@@ -1,6 +1,6 @@
 //! The lobes around the fibre, averaged over its width.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 
 use super::dielectric::Crossing;
 use super::table::LOBES;
@@ -14,7 +14,7 @@ const MIN_WIDTH: f64 = 0.05;
 /// Width of the detector of a roughness from 0 to 1: the fit of Chiang et al. 2015.
 pub(crate) fn detector_width(roughness: f64) -> f64 {
     // NaN too becomes a number.
-    let beta = roughness.max(0.0).min(1.0);
+    let beta = if roughness > 0.0 { roughness.min(1.0) } else { 0.0 };
     (0.626_657_069 * (0.265 * beta + 1.194 * beta * beta + 5.372 * beta.powi(22))).max(MIN_WIDTH)
 }
 
@@ -43,7 +43,6 @@ impl Across {
         let mut crossings: Vec<_> = (0..PLACES).map(crossing).collect();
         let sum: f64 = crossings.iter().map(|(_, weight)| weight).sum();
         crossings.iter_mut().for_each(|(_, weight)| *weight /= sum);
-        debug_assert!((sum - 1.0).abs() < 1e-3 && FRAC_PI_2 > 1.5);
         Self { crossings }
     }
 

@@ -2,13 +2,13 @@
 
 use super::table::LOBES;
 
-/// Rougher fibres than this are told apart; smoother ones have lobes that no vertex would catch.
+/// Smoother fibres have lobes that are narrower than what changes from vertex to vertex.
 const MIN_ROUGHNESS: f64 = 0.05;
 
 /// The variances of the lobes of a fibre of a roughness from 0 to 1, with the fit and the factors of Chiang et al. 2015.
 pub(crate) fn variances(roughness: f64) -> [f64; LOBES] {
     // NaN too becomes a number.
-    let beta = roughness.max(MIN_ROUGHNESS).min(1.0);
+    let beta = if roughness > MIN_ROUGHNESS { roughness.min(1.0) } else { MIN_ROUGHNESS };
     let variance = (0.726 * beta + 0.812 * beta * beta + 3.7 * beta.powi(20)).powi(2);
     [1.0, 0.25, 4.0, 4.0].map(|factor| factor * variance)
 }
