@@ -17,8 +17,9 @@ use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Fill, HairRenderer, Light, Lights, LodDesc, MAX_LIGHTS, Material, OpaqueDepth, PpllDesc, RenderDesc, SectionDraw,
-    ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
+    FibreScattering, Fill, HairRenderer, Light, Lights, LodDesc, Look, MAX_LIGHTS, Material, OpaqueDepth, Pigment,
+    PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique,
+    TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
 
@@ -134,10 +135,28 @@ fn ranges_are_those_that_the_code_refuses_beyond() {
     ranges::hold("Clock", "", |table| table.try_into().ok().map(|params: ClockParams| params.validate().is_ok()));
     ranges::hold("Simulation", "", |table| table.try_into().ok().map(|params: SimParams| params.validate().is_ok()));
     ranges::hold("Wind", "", |table| table.try_into().ok().map(|wind: Wind| wind.validate().is_ok()));
-    let material = "primary = { strength = 0.5, exponent = 9.0 }\nsecondary = { strength = 0.5, exponent = 9.0 }\n";
+    let material = "primary = { strength = 0.5, exponent = 9.0 }\nsecondary = { strength = 0.5, exponent = 9.0 }\nfibre = { roughness = 0.3 }\n";
     ranges::hold("Material", material, |table| {
         table.try_into().ok().map(|material: Material| material.validate().is_ok())
     });
+}
+
+#[test]
+fn the_table_of_looks_has_those_of_the_code() {
+    let text = include_str!("../../docs/materials.md");
+    let numbers = |color: glam::Vec3| color.to_array().map(|c| c.to_string()).join(", ");
+    for look in Look::ALL {
+        let pigment = match (look.pigment, look.colors) {
+            (Pigment::Melanin { eumelanin, pheomelanin }, _) => {
+                format!("eumelanin {eumelanin}, pheomelanin {pheomelanin}")
+            }
+            (Pigment::Absorption(absorption), _) => format!("absorption {}", numbers(absorption)),
+            (_, colors) => format!("colours {}", colors.unwrap().map(numbers).join(" and ")),
+        };
+        let Look { name, roughness, variation, shadow_alpha, .. } = look;
+        let row = format!("| `{name}` | {pigment} | {roughness} | {variation} | {shadow_alpha} |");
+        assert!(text.contains(&row), "materials.md has no row {row}");
+    }
 }
 
 /// Lists with every pass that there is.
@@ -168,6 +187,7 @@ fn everything() -> PassList {
     let section = section.with_past(&mut backend).unwrap();
     let material = Material::default();
     let draw = SectionDraw::new(&section, &material, sim.pose());
+    let glass = Material::default().with(|material| material.fibre = Some(FibreScattering::default()));
     let light = Light::directional(glam::Vec3::Y, glam::Vec3::ONE).opaque(map);
     let lights = Lights { sky: glam::Vec3::ONE, lights: vec![light], ..Lights::default() };
     let techniques: [Technique; 8] = [
@@ -185,6 +205,8 @@ fn everything() -> PassList {
         let desc = RenderDesc::new(size, Format::Rgba16F).technique(technique);
         let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
         renderer.grow_to_predicted(&mut backend, &view, &[draw]).unwrap();
+        renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
+        let draw = SectionDraw::new(&section, &glass, sim.pose());
         renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     }
     let desc = RenderDesc::new(size, Format::Rgba16F).velocity_output(true);

@@ -89,6 +89,7 @@ impl Groom {
             positions: &self.positions,
             tangents: &self.tangents,
             arriving: None,
+            fibre: None,
             thickness: &self.thickness,
         }
     }

@@ -10,8 +10,8 @@ use tressfx_core::backend::{DepthOrder, Format};
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{Camera, Pose, View, ViewError};
 use tressfx_render::{
-    AutoDesc, Fill, HairRenderer, Light, Material, PpllDesc, RenderDesc, SectionDraw, ShortCutDesc, Tail, Technique,
-    TilesDesc, ViewDraw,
+    AutoDesc, FibreScattering, Fill, HairRenderer, Light, Material, Pigment, PpllDesc, RenderDesc, SectionDraw,
+    ShortCutDesc, Tail, Technique, TilesDesc, ViewDraw,
 };
 
 use support::gpu;
@@ -335,9 +335,15 @@ fn no_fragment_in_order_and_more_than_there_may_be() {
     }
 }
 
+fn glass(pigment: Pigment, roughness: f32) -> FibreScattering {
+    let mut fibre = FibreScattering::default().with_pigment(pigment);
+    (fibre.roughness, fibre.azimuthal_roughness, fibre.multiple) = (roughness, roughness, roughness);
+    fibre
+}
+
 #[test]
 fn numbers_of_looks_and_lights_that_are_not_finite() {
-    let spoil: [fn(&mut Material, f32); 8] = [
+    let spoil: [fn(&mut Material, f32); 10] = [
         |m, bad| m.opacity = bad,
         |m, bad| m.tip_opacity = bad,
         |m, bad| m.fibre_radius = Some(bad),
@@ -346,6 +352,8 @@ fn numbers_of_looks_and_lights_that_are_not_finite() {
         |m, bad| m.variation = bad,
         |m, bad| m.primary.exponent = bad,
         |m, bad| m.root_extent = bad,
+        |m, bad| m.fibre = Some(glass(Pigment::Absorption(Vec3::splat(bad)), 0.3)),
+        |m, bad| m.fibre = Some(glass(Pigment::Color, bad)),
     ];
     each(&techniques(), |name, screen, _| {
         for bad in [f32::NAN, f32::INFINITY, -1.0] {

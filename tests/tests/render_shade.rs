@@ -7,7 +7,9 @@ use tressfx_conformance::render::{Groom, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
-use tressfx_render::{Cone, DrawError, Highlight, Light, Material, SectionDraw, ViewDraw, reference};
+use tressfx_render::{
+    Cone, DrawError, FibreScattering, Highlight, Light, Material, Pigment, SectionDraw, ViewDraw, reference,
+};
 
 use support::screen;
 
@@ -27,7 +29,9 @@ fn shaded(screen: &mut Screen, groom: &Groom) -> Vec<DVec4> {
 /// The largest difference, as a share of the colour where that is above 1.
 fn error(screen: &mut Screen, groom: &Groom) -> f64 {
     let colors = shaded(screen, groom);
-    let (view, lights, strands) = (screen.view, screen.lights.clone(), groom.reference());
+    let table = reference::FibreTable::of(&groom.material);
+    let strands = reference::Strands { fibre: table.as_ref(), ..groom.reference() };
+    let (view, lights) = (screen.view, screen.lights.clone());
     let count = groom.shape.strands();
     let mut worst = 0.0f64;
     for (i, color) in colors.iter().enumerate() {
@@ -61,6 +65,45 @@ fn every_vertex_is_as_in_f64() {
         eprintln!("8000 vertices: largest error {error:.2e}");
         // Half floats have 11 bits.
         assert!(error < 6e-4, "{error}");
+    }
+}
+
+fn glass(pigment: Pigment, roughness: f32, azimuthal_roughness: f32) -> Material {
+    let mut fibre = FibreScattering::default().with_pigment(pigment);
+    (fibre.roughness, fibre.azimuthal_roughness) = (roughness, azimuthal_roughness);
+    Material::default().with(|m| m.fibre = Some(fibre))
+}
+
+#[test]
+fn every_vertex_of_fibres_that_scatter_as_glass_is_as_in_f64() {
+    let Some(mut screen) = screen(|_| ()) else { return };
+    screen.lights.lights.push(Light::point(Vec3::new(0.4, 0.3, 0.8), 0.7, Vec3::new(2.0, 1.0, 0.5)));
+    let materials = [
+        glass(Pigment::Color, 0.3, 0.3),
+        glass(Pigment::Melanin { eumelanin: 0.3, pheomelanin: 0.1 }, 0.15, 0.2).with(|m| m.tilt = -8.0),
+        glass(Pigment::Absorption(Vec3::new(0.0, 1.0, 1e6)), 1.0, 1.0),
+    ];
+    for material in materials {
+        let groom = Groom::wavy(500, 16, 1, material);
+        let error = error(&mut screen, &groom);
+        eprintln!("8000 vertices: largest error {error:.2e}");
+        // The table has half floats too.
+        assert!(error < 2e-3, "{error}");
+    }
+}
+
+#[test]
+fn whatever_a_fibre_is_made_of_its_colour_is_a_number() {
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let (sound, broken) = ([0.0, 0.5, 1.0], [f32::NAN, f32::INFINITY, -1.0, 1e9]);
+    let all = || sound.into_iter().chain(broken);
+    for (a, roughness) in all().flat_map(|a| all().map(move |roughness| (1e6 * a, roughness))) {
+        let material = glass(Pigment::Absorption(Vec3::splat(a)), roughness, roughness);
+        let is_sound = sound.contains(&(a / 1e6)) && sound.contains(&roughness);
+        assert_eq!(material.validate().is_ok(), is_sound, "{a}, {roughness}");
+        for color in shaded(&mut screen, &Groom::wavy(20, 8, 2, material)) {
+            assert!(color.is_finite() && color.min_element() >= 0.0, "{a}, {roughness}: {color}");
+        }
     }
 }
 

@@ -10,9 +10,9 @@ use tressfx_core::backend::DepthOrder;
 use tressfx_core::pass::PassList;
 use tressfx_core::shape::Ellipsoid;
 use tressfx_core::view::{Pose, View};
-use tressfx_render::reference::{Arriving, Shadows, shadow_light, shadow_opaque};
+use tressfx_render::reference::{self, Arriving, Shadows, shadow_light, shadow_opaque};
 use tressfx_render::uniforms::{OpaqueUniform, ShadowUniform};
-use tressfx_render::{Light, Lights, Lod, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
+use tressfx_render::{FibreScattering, Light, Lights, Lod, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
 
 use support::screen;
 
@@ -91,6 +91,36 @@ fn is_as_in_f64(screen: &mut Screen, lod: Lod) {
     let error = quantile(off, 0.99);
     eprintln!("sky: 99 of 100 vertices within {error:.4}");
     assert!(error < 0.003, "{error}");
+}
+
+#[test]
+fn fibres_that_scatter_as_glass_are_shaded_as_in_f64() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    screen.lights.sky = Vec3::new(0.5, 0.6, 0.7);
+    let material = Material::default().with(|m| m.fibre = Some(FibreScattering::default()));
+    let groom = Groom::wavy(500, 16, 1, material);
+    let mut list = PassList::new();
+    let section = screen.section(&mut list, &groom);
+    let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+    let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+    screen.renderer.draw(&mut list, &[view], &draws).unwrap();
+    let vertices = groom.positions.len() as u64;
+    let ticket = list.read_buffer(section.colors(), 0, 8 * vertices);
+    let bytes = run_and_read(&mut *screen.backend, &list, ticket);
+    // The same list leaves the same light.
+    let (arriving, _) = arriving(&mut screen, &DESC(), &groom);
+    let table = reference::FibreTable::of(&groom.material);
+    let strands = reference::Strands { fibre: table.as_ref(), arriving: Some(&arriving), ..groom.reference() };
+    let (count, mut worst, mut darkest) = (groom.shape.strands(), 0.0f64, f64::INFINITY);
+    for (i, bytes) in (0..).zip(bytes.chunks(8)) {
+        let channel = |c: usize| half::f16::from_le_bytes([bytes[2 * c], bytes[2 * c + 1]]).to_f64();
+        let found = DVec4::from_array([0, 1, 2, 3].map(channel));
+        let expected = reference::shade(&screen.view, &screen.lights, &strands, i % count, i / count);
+        worst = worst.max(((found - expected).abs() / expected.max(DVec4::ONE)).max_element());
+        darkest = darkest.min(expected.x);
+    }
+    eprintln!("{vertices} vertices in shadows: largest error {worst:.2e}, the darkest is {darkest:.3}");
+    assert!(worst < 2e-3, "{worst}");
 }
 
 /// A slab of fibres in the plane across y, all along x, that is 1 deep and in which a ray along y meets `crossings` fibres in the mean.

@@ -14,7 +14,7 @@ use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{Camera, View};
-use tressfx_render::{Highlight, Material, ShadowDesc, Technique};
+use tressfx_render::{FibreScattering, Highlight, Material, ShadowDesc, Technique};
 
 use hair::Grooms;
 use scenes::{Eye, Look, SCENES, Scene, Solid};
@@ -51,6 +51,7 @@ fn look(look: Look) -> Material {
                 (Highlight { strength: 4.0, exponent: 900.0 }, Highlight { strength: 4.0, exponent: 300.0 });
             (m.tilt, m.tilt_variation) = (20.0, 1.0);
         }
+        Look::Glass => m.fibre = Some(FibreScattering::default()),
         Look::Flat => (m.diffuse, m.self_shadow, m.root_shade) = (0.0, 0.0, 0.0),
     })
 }

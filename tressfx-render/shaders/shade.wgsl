@@ -2,8 +2,9 @@
 // they cover and however often.
 
 import package::grid::{GROUP, thread_index};
-import package::lighting::{Fibre, scatter};
+@if(!fibre) import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
+@if(fibre) import package::scattering::{Fibre, fibres, scatter, under_sky};
 import package::section::{SectionUniform, drawn_vertex, strand_random};
 import package::view::{ViewUniform, towards, towards_eye};
 
@@ -18,6 +19,9 @@ import package::view::{ViewUniform, towards, towards_eye};
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
+// Less light than the smallest share that is told from none comes through no hair, and less light of the sky keeps its colour.
+const DARK: f32 = 4e-6;
+const DARKEST_SKY: f32 = 1e-3;
 
 fn posed(i: u32) -> vec3<f32> {
     return (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
@@ -55,13 +59,36 @@ fn around(open: vec4<f32>) -> vec3<f32> {
 fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     let eye = unit(towards_eye(view.eye, point));
     var shares = arriving_at(i);
-    var sum = around(shares.sky) * fibre.albedo;
+    var sum = around(shares.sky);
+    @if(!fibre) { sum *= fibre.albedo; }
+    @if(fibre) {
+        let open = clamp(mix(1.0, shares.sky.w, section.self_shadow), DARKEST_SKY, 1.0);
+        sum *= under_sky(fibre, eye, fibres(open, section.shadow_alpha)) / open;
+    }
     for (var light = 0u; light < view.light_count; light++) {
         let from_light = towards(view.lights[light], point);
-        let arrives = from_light.w * mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
-        sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz);
+        let share = mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
+        @if(!fibre) { sum += view.lights[light].color.rgb * (from_light.w * share) * scatter(fibre, eye, from_light.xyz); }
+        @if(fibre) {
+            let behind = fibres(max(share, DARK), section.shadow_alpha);
+            let arrives = select(from_light.w, 0.0, share < DARK);
+            sum += view.lights[light].color.rgb * arrives * scatter(fibre, eye, from_light.xyz, behind);
+        }
     }
     return sum;
+}
+
+// What a fibre is made of: `shade` is from -1 to 1, a strand that is darker or brighter than others.
+@if(!fibre)
+fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
+    let albedo = mix(section.base, section.tip, along).rgb * (1.0 + section.variation * shade);
+    return Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+}
+
+@if(fibre)
+fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
+    let absorption = mix(section.absorption, section.tip_absorption, along).rgb * (1.0 - section.variation * shade);
+    return Fibre(tangent, tilt, absorption, section.variance, section.multiple);
 }
 
 @compute @workgroup_size(GROUP)
@@ -79,13 +106,12 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
-    let paint = mix(section.base, section.tip, along);
-    let albedo = paint.rgb * (1.0 + section.variation * strand_random(strand, guide, 0u));
     let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
-    let fibre = Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
+    let fibre = fibre_at(tangent, tilt, strand_random(strand, guide, 0u), along);
+    let opacity = mix(section.base.a, section.tip.a, along);
     var color = clamp(skin * lit(point, fibre, i), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);
     }
-    colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, paint.a)));
+    colors[i] = vec2(pack2x16float(color.rg), pack2x16float(vec2(color.b, opacity)));
 }

@@ -5,6 +5,8 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::fibre::FibreScattering;
+
 /// A highlight of a fibre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -53,6 +55,8 @@ pub struct Material {
     pub root_shade: f32,
     /// Share of a strand's length, from the root, over which that darkness fades.
     pub root_extent: f32,
+    /// Fibres that scatter light as glass with pigment, in the place of `diffuse`, `primary` and `secondary` (Kajiya and Kay).
+    pub fibre: Option<FibreScattering>,
 }
 
 impl Default for Material {
@@ -75,6 +79,7 @@ impl Default for Material {
             shadow_alpha: 0.3,
             root_shade: 0.35,
             root_extent: 0.2,
+            fibre: None,
         }
     }
 }
@@ -125,7 +130,8 @@ impl Material {
             ("root_shade", self.root_shade, 0.0..=1.0),
             ("root_extent", self.root_extent, 0.001..=1.0),
         ];
-        match checks.into_iter().find(|(_, value, range)| !range.contains(value)) {
+        let of_fibre = self.fibre.iter().flat_map(FibreScattering::checks);
+        match checks.into_iter().chain(of_fibre).find(|(_, value, range)| !range.contains(value)) {
             Some((parameter, value, range)) => Err(MaterialError { parameter, value, range }),
             None => Ok(()),
         }

@@ -11,6 +11,7 @@ mod nearest;
 mod projection;
 mod resolve;
 mod ribbon;
+mod scatter;
 mod seen_keys;
 mod seen_segments;
 mod shade;
@@ -31,6 +32,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use crate::lights::MAX_LIGHTS;
 use crate::uniforms::SectionUniform;
 
+pub use crate::scattering::FibreTable;
 pub use coverage::coverage;
 pub use fill::{Fragment, fill};
 pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};
@@ -76,6 +78,8 @@ pub struct Strands<'a> {
     pub tangents: &'a [[f32; 4]],
     /// What arrives at each vertex, in the order of the positions; none where nothing shades.
     pub arriving: Option<&'a [Arriving]>,
+    /// What fibres that scatter as glass look up; none where the material has none.
+    pub fibre: Option<&'a FibreTable>,
     /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
     pub thickness: &'a [f32],
 }

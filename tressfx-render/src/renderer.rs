@@ -318,6 +318,7 @@ impl HairRenderer {
         }
         self.views.upload(list, views);
         casting.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        draws.iter().for_each(|draw| self.shade.upload(list, draw));
         // What arrives does not depend on the eye: views in the same light share it.
         let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));
         for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {

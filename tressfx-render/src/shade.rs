@@ -4,36 +4,72 @@ use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Kernel, Specialization};
+use tressfx_core::shader::{Kernel, Module, Specialization};
 
 use crate::bound::Bound;
-use crate::shaders::{GROUP, SHARED, compute};
+use crate::scattering::{FibreTable, Shape};
+use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
+const LIBRARY: [Module; 17] = with_shared([("scattering", include_str!("../shaders/scattering.wgsl"))]);
+
+/// The kernels of one way to scatter light.
 #[derive(Debug)]
-pub(crate) struct Shade {
+pub(crate) struct Kernels {
     /// Where all light arrives.
     pub(crate) open: Kernel,
     /// Where shadows are made.
     pub(crate) shadowed: Option<Kernel>,
-    /// By view, section, and whether it is shadowed.
-    bound: Bound<(usize, BufferId, bool)>,
+}
+
+impl Kernels {
+    fn new(backend: &mut dyn Backend, has_shadows: bool, fibre: bool) -> Result<Self> {
+        let root = ("shade", include_str!("../shaders/shade.wgsl"));
+        let mut kernel = |shadows| {
+            let specialization = Specialization::new().feature("shadows", shadows).feature("fibre", fibre);
+            compute(backend, "hair.render.shade", root, &LIBRARY, &specialization)
+        };
+        Ok(Self { open: kernel(false)?, shadowed: has_shadows.then(|| kernel(true)).transpose()? })
+    }
+}
+
+/// A table as it is uploaded, and whether a section of this frame needs it.
+type MadeTable = (Shape, Vec<[u32; 4]>, bool);
+
+#[derive(Debug)]
+pub(crate) struct Shade {
+    /// Kajiya and Kay.
+    pub(crate) kajiya: Kernels,
+    /// Fibres that scatter as glass.
+    pub(crate) fibre: Kernels,
+    tables: Vec<MadeTable>,
+    /// By view, section, and whether it is shadowed and scatters as glass.
+    bound: Bound<(usize, BufferId, [bool; 2])>,
 }
 
 impl Shade {
     pub(crate) fn new(backend: &mut dyn Backend, has_shadows: bool) -> Result<Self> {
-        let root = ("shade", include_str!("../shaders/shade.wgsl"));
-        let mut kernel = |shadows| {
-            let specialization = Specialization::new().feature("shadows", shadows);
-            compute(backend, "hair.render.shade", root, &SHARED, &specialization)
-        };
-        let shadowed = has_shadows.then(|| kernel(true)).transpose()?;
-        Ok(Self { open: kernel(false)?, shadowed, bound: Bound::new() })
+        let [kajiya, fibre] = [false, true].map(|fibre| Kernels::new(backend, has_shadows, fibre));
+        Ok(Self { kajiya: kajiya?, fibre: fibre?, tables: Vec::new(), bound: Bound::new() })
     }
 
     pub(crate) fn begin(&mut self) {
         self.bound.begin_frame();
+        self.tables.retain(|(_, _, is_used)| *is_used);
+        self.tables.iter_mut().for_each(|(_, _, is_used)| *is_used = false);
+    }
+
+    /// Uploads what the fibres of a section look up. A table is made where the frame before had none like it.
+    pub(crate) fn upload(&mut self, list: &mut PassList, draw: &SectionDraw) {
+        let Some(shape) = draw.material.fibre_shape() else { return };
+        let index = self.tables.iter().position(|(of, _, _)| *of == shape).unwrap_or_else(|| {
+            self.tables.push((shape, FibreTable::new(&shape).packed(), true));
+            self.tables.len() - 1
+        });
+        let (_, table, is_used) = &mut self.tables[index];
+        *is_used = true;
+        list.upload(draw.strands.fibre_table, 0, table);
     }
 
     /// `is_shadowed`: what arrives at the strands has been found.
@@ -44,20 +80,23 @@ impl Shade {
         draw: &SectionDraw,
         is_shadowed: bool,
     ) -> Result<()> {
-        let strands = draw.strands;
-        let resources = [
-            ("view", view.uniform),
-            ("section", strands.uniform.into()),
-            ("positions", strands.buffers.positions.into()),
-            ("tangents", strands.buffers.tangents.into()),
-            ("colors", strands.colors.into()),
-            ("arriving", strands.arriving.into()),
-        ];
-        let (kernel, used) = match &self.shadowed {
-            Some(shadowed) if is_shadowed => (shadowed, &resources[..]),
-            _ => (&self.open, &resources[..5]),
-        };
-        let bindings = self.bound.get((view.index, strands.colors, is_shadowed), || kernel.bind(used))?;
+        let (strands, is_fibre) = (draw.strands, draw.material.fibre.is_some());
+        let kernels = if is_fibre { &self.fibre } else { &self.kajiya };
+        let shadowed = kernels.shadowed.as_ref().filter(|_| is_shadowed);
+        let kernel = shadowed.unwrap_or(&kernels.open);
+        let key = (view.index, strands.colors, [shadowed.is_some(), is_fibre]);
+        let bindings = self.bound.get(key, || {
+            let mut resources = vec![
+                ("view", view.uniform),
+                ("section", strands.uniform.into()),
+                ("positions", strands.buffers.positions.into()),
+                ("tangents", strands.buffers.tangents.into()),
+                ("colors", strands.colors.into()),
+            ];
+            resources.extend(shadowed.map(|_| ("arriving", strands.arriving.into())));
+            resources.extend(is_fibre.then(|| ("fibre_table", strands.fibre_table.into())));
+            kernel.bind(&resources)
+        })?;
         list.compute(kernel, &bindings, Grid::for_threads(draw.vertices(), GROUP));
         Ok(())
     }

@@ -14,6 +14,7 @@ use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
 use crate::reach;
+use crate::scattering::ENTRIES;
 use crate::uniforms::{LodUniform, SectionUniform};
 use crate::velocity::Past;
 use crate::views::BoundView;
@@ -113,6 +114,8 @@ pub struct ShadedStrands {
     pub(crate) colors: BufferId,
     /// `vec4<u32>` a vertex of every strand: what arrives of the sky and of each light, see `shadow_light.wgsl`.
     pub(crate) arriving: BufferId,
+    /// What shaders look up of a fibre that scatters as glass.
+    pub(crate) fibre_table: BufferId,
     /// A point and a distance from it within which the samples of the rest pose lie, relative to the centre of the buffers.
     pub(crate) sphere: (Vec3, f32),
     /// How far from the centre of the buffers a strand may be.
@@ -138,14 +141,15 @@ impl ShadedStrands {
                 backend.create_buffer(&uniform)?,
                 backend.create_buffer(&BufferDesc::storage("hair.render.colors", colors))?,
                 backend.create_buffer(&BufferDesc::storage("hair.render.arriving", arriving))?,
+                backend.create_buffer(&BufferDesc::storage("hair.render.fibre_table", 16 * ENTRIES as u64))?,
             ])
         });
-        let ([uniform, colors, arriving], owner) = made?;
+        let ([uniform, colors, arriving, fibre_table], owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
         // The head turns around the centre of the buffers.
         let reach = info.reach.0.distance(buffers.center) + info.reach.1;
-        Ok(Self { buffers, info, uniform, colors, arriving, sphere, reach, past: None, owner })
+        Ok(Self { buffers, info, uniform, colors, arriving, fibre_table, sphere, reach, past: None, owner })
     }
 
     /// The same with room for the positions of the frame before, 16 bytes a vertex: for renderers that write the motion of hair, see

@@ -8,6 +8,7 @@ use tressfx_core::view::{Pose, View};
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::material::Material;
+use crate::scattering::variances;
 pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
 pub use crate::velocity::MotionUniform;
@@ -135,10 +136,16 @@ gpu_struct! {
         pub root_extent: f32,
         /// The share of light that a fibre takes on its way to others.
         pub shadow_alpha: f32,
+        /// Variance of the lobe that a fibre mirrors into, where it scatters as glass.
+        pub variance: f32,
+        /// How much of what the fibres behind it give back is seen.
+        pub multiple: f32,
         /// Strands that are counted for shadows at most.
         pub shadow_strands: u32,
-        /// Nothing.
-        pub unused_too: [u32; 2],
+        /// Absorption in a radius of the fibre at the root, and 0.
+        pub absorption: [f32; 4],
+        /// At the tip.
+        pub tip_absorption: [f32; 4],
     }
 }
 
@@ -207,7 +214,9 @@ impl ViewUniform {
 impl SectionUniform {
     /// What the shaders are given for a section.
     pub fn new(shape: StrandShape, info: &StrandInfo, material: &Material, pose: &Pose, lod: &Lod) -> Self {
-        let Material { base_color, tip_color, primary, secondary, .. } = *material;
+        let Material { primary, secondary, .. } = *material;
+        let ([base_color, tip_color], [absorption, tip_absorption]) = (material.colors(), material.absorptions());
+        let roughness = material.fibre.map_or(0.0, |fibre| fibre.roughness);
         let matrix: Mat4 = pose.matrix();
         // The mean of several strands differs less from that of others.
         let apart = lod.widening(shape).sqrt();
@@ -231,8 +240,11 @@ impl SectionUniform {
             root_shade: material.root_shade,
             root_extent: material.root_extent,
             shadow_alpha: material.shadow_alpha,
+            variance: variances(f64::from(roughness))[0] as f32,
+            multiple: material.fibre.map_or(0.0, |fibre| fibre.multiple),
             shadow_strands: lod.shadow_strands(shape),
-            unused_too: [0; 2],
+            absorption: with(absorption, 0.0),
+            tip_absorption: with(tip_absorption, 0.0),
         }
     }
 }

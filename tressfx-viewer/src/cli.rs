@@ -7,6 +7,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use tressfx_core::shader::Language;
+use tressfx_render::Look;
 use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
@@ -159,6 +160,12 @@ pub(crate) struct Render {
     pub(crate) shadows: Shadows,
     #[command(flatten)]
     pub(crate) lod: Lod,
+    /// The colour of the hair, with fibres that scatter light as glass; it replaces what the parameters say
+    #[arg(long, value_name = "NAME", value_parser = looks())]
+    pub(crate) look: Option<Look>,
+    /// How fibres scatter light, with the colours that the hair has; without it, as the look and the parameters say
+    #[arg(long, value_enum)]
+    pub(crate) scattering: Option<Scattering>,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
@@ -265,6 +272,14 @@ impl LanguageName {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Scattering {
+    /// A diffuse term and two highlights (Kajiya and Kay)
+    Kajiya,
+    /// Glass with tilted scales and pigment (Marschner et al.), which keeps the energy of light
+    Fibre,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Motion {
     /// It does not
     Still,
@@ -326,6 +341,12 @@ pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
 fn presets() -> impl TypedValueParser<Value = Preset> {
     let names = Preset::ALL.map(|preset| PossibleValue::new(preset.name).help(preset.what));
     PossibleValuesParser::new(names).try_map(|name| name.parse::<Preset>())
+}
+
+/// The names of looks, each with what it is.
+fn looks() -> impl TypedValueParser<Value = Look> {
+    let names = Look::ALL.map(|look| PossibleValue::new(look.name).help(look.what));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<Look>())
 }
 
 fn share(text: &str) -> Result<f32, String> {

@@ -89,7 +89,7 @@ mod tests {
         let text = include_str!("../../docs/parameters.toml");
         assert_eq!(Params::parse(text, 1).unwrap(), Params::default());
         // What stands there as a comment must be right too.
-        let all = text.replace("# tip_", "tip_").replace("# fibre_", "fibre_");
+        let all = text.replace("# tip_", "tip_").replace("# fibre_", "fibre_").replace("# fibre.", "fibre.");
         let tables = all.split("# [").skip(1).map(|table| format!("[{}", table.replace("\n# ", "\n")));
         for table in [all.split("# [").next().unwrap().to_owned()].into_iter().chain(tables) {
             Params::parse(&table, 1).unwrap_or_else(|error| panic!("{error:#}\n{table}"));

@@ -60,7 +60,7 @@ impl Studio {
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
             let section = if velocity_output { section.with_past(backend)? } else { section };
-            sections.push((section, *run.params.material(index)));
+            sections.push((section, material(args, *run.params.material(index))));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output);
@@ -159,6 +159,18 @@ impl Studio {
         self.take_stock(run, counters)?;
         run.fetch(picture)
     }
+}
+
+/// The look of a section, with what was asked for.
+fn material(args: &Render, material: Material) -> Material {
+    let material = args.look.map_or(material, |look| look.on(material));
+    let fibre = match args.scattering {
+        None => material.fibre,
+        Some(cli::Scattering::Kajiya) => None,
+        Some(cli::Scattering::Fibre) => Some(material.fibre.unwrap_or_default()),
+    };
+    let [base_color, tip_color] = material.colors();
+    material.with(|m| (m.fibre, m.base_color, m.tip_color) = (fibre, base_color, tip_color))
 }
 
 /// The sections with the detail that the view needs; all of it where no `lod` is given.

@@ -9,7 +9,7 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 11] = [
+const PICTURES: [(&str, &str); 17] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
@@ -19,6 +19,12 @@ const PICTURES: [(&str, &str); 11] = [
     ("preset-medium.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset medium"),
     ("preset-sprayed.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset sprayed"),
     ("preset-mohawk.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset mohawk"),
+    ("look-blond.png", "builtin:long --frames 0 --size 320x400 --look blond"),
+    ("look-red.png", "builtin:long --frames 0 --size 320x400 --look red"),
+    ("look-brown.png", "builtin:long --frames 0 --size 320x400 --look brown"),
+    ("look-black.png", "builtin:long --frames 0 --size 320x400 --look black"),
+    ("look-grey.png", "builtin:long --frames 0 --size 320x400 --look grey"),
+    ("look-dyed.png", "builtin:long --frames 0 --size 320x400 --look dyed"),
     // Whole periods of the motion, after the first.
     ("long-turn.gif", "builtin:long:2000 --follow 1 --motion turn --fps 20 --from 50 --frames 100 --size 256x256"),
     (

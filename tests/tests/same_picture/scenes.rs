@@ -57,6 +57,8 @@ pub(crate) enum Look {
     Wide,
     /// Narrow highlights, shifted.
     Glossy,
+    /// Fibres that scatter light as glass.
+    Glass,
     /// Without light that is scattered, and without shadow.
     Flat,
 }
@@ -227,6 +229,8 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("wide", LOOSE, (Eye::Near, Look::Wide, Solid::Nothing), [64, 48], USUAL),
     scene("wide from inside", LOOSE, (Eye::Inside, Look::Wide, Solid::Nothing), [96, 64], USUAL),
     scene("glossy", CURLY, (Eye::Near, Look::Glossy, Solid::Nothing), [128, 96], USUAL),
+    scene("glass", CURLY, (Eye::Near, Look::Glass, Solid::Nothing), [128, 96], USUAL),
+    scene("glass from inside", LONG, (Eye::Inside, Look::Glass, Solid::Roof), [128, 96], USUAL),
     scene("flat", FUR, (Eye::Middle, Look::Flat, Solid::Nothing), [128, 96], USUAL),
     // Before and behind something opaque.
     scene("through a roof", CURLY, (Eye::Middle, Look::Default, Solid::Roof), [160, 96], USUAL),

@@ -35,9 +35,14 @@ struct SectionUniform {
     root_extent: f32,
     // The share of light that a fibre takes on its way to others.
     shadow_alpha: f32,
+    // Of a fibre that scatters as glass: the variance of the lobe that it mirrors into, and what a radius of it takes at the root and at the tip.
+    variance: f32,
+    // How much of what fibres behind it give back is seen.
+    multiple: f32,
     // Strands that are counted for shadows at most.
     shadow_strands: u32,
-    unused_too: vec2<u32>,
+    absorption: vec4<f32>,
+    tip_absorption: vec4<f32>,
 }
 
 // Strand and vertex of thread `i`, of those that draw a section; `vertices` are those of the whole strand.

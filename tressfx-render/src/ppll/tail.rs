@@ -22,6 +22,6 @@ pub enum Tail {
 /// The colour of a tail that is not shaded.
 pub(crate) fn unlit(draws: &[SectionDraw]) -> [f32; 4] {
     let segments = |draw: &SectionDraw| draw.segments() as f32;
-    let sum: Vec3 = draws.iter().map(|draw| draw.material.base_color * segments(draw)).sum();
+    let sum: Vec3 = draws.iter().map(|draw| draw.material.colors()[0] * segments(draw)).sum();
     (sum / draws.iter().map(segments).sum::<f32>().max(1.0)).extend(1.0).to_array()
 }

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3, DVec4};
 use tressfx_core::view::View;
 
 use super::projection::Projection;
+use super::scatter;
 use super::{Arriving, Strands, matrix, pair, xyz};
 use crate::lights::{Light, LightPlace, Lights};
 
@@ -14,24 +15,72 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
     let guide = strand % of.guides;
     let index = (vertex * of.strands + strand) as usize;
     let along = f64::from(vertex) / f64::from(of.vertices - 1);
-    let paint = DVec4::from_array(of.base.map(f64::from)).lerp(DVec4::from_array(of.tip.map(f64::from)), along);
-    let fibre = Fibre {
-        tangent: matrix(&of.pose).transform_vector3(xyz(&strands.tangents[index])),
-        tilt: f64::from(of.tilt) * (1.0 + f64::from(of.tilt_variation) * strand_random(strand, guide, 1)),
-        albedo: paint.truncate() * (1.0 + f64::from(of.variation) * strand_random(strand, guide, 0)),
-        diffuse: f64::from(of.diffuse),
-        primary: pair(of.primary),
-        secondary: pair(of.secondary),
+    let [base, tip] = [of.base, of.tip].map(|paint| DVec4::from_array(paint.map(f64::from)));
+    let paint = base.lerp(tip, along);
+    let tangent = matrix(&of.pose).transform_vector3(xyz(&strands.tangents[index]));
+    let tilt = f64::from(of.tilt) * (1.0 + f64::from(of.tilt_variation) * strand_random(strand, guide, 1));
+    let differs = f64::from(of.variation) * strand_random(strand, guide, 0);
+    let fibre = match strands.fibre {
+        Some(table) => Fibre::Glass(scatter::Fibre {
+            tangent,
+            tilt,
+            absorption: xyz(&of.absorption).lerp(xyz(&of.tip_absorption), along) * (1.0 - differs),
+            variances: [1.0, 0.25, 4.0, 4.0].map(|factor| factor * f64::from(of.variance)),
+            multiple: f64::from(of.multiple),
+            table,
+        }),
+        None => Fibre::Kajiya(Kajiya {
+            tangent,
+            tilt,
+            albedo: paint.truncate() * (1.0 + differs),
+            diffuse: f64::from(of.diffuse),
+            primary: pair(of.primary),
+            secondary: pair(of.secondary),
+        }),
     };
     let skin = 1.0 - f64::from(of.root_shade) * (1.0 - smoothstep(along / f64::from(of.root_extent)));
     let point = strands.posed(index);
     let arriving = strands.arriving.map_or(Arriving::ALL, |arriving| arriving[index]);
     let eye = Projection::new(view).towards_eye(point);
-    let color = skin * lit(lights, f64::from(of.self_shadow), point, eye, &fibre, &arriving);
+    let color = skin * lit(lights, [of.self_shadow, of.shadow_alpha].map(f64::from), point, eye, &fibre, &arriving);
     color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
 }
 
-struct Fibre {
+/// How a fibre scatters light.
+enum Fibre<'a> {
+    Kajiya(Kajiya),
+    Glass(scatter::Fibre<'a>),
+}
+
+impl Fibre<'_> {
+    /// The radiance in light of which the share `share` arrives.
+    fn scatter(&self, eye: DVec3, light: DVec3, share: f64, alpha: f64) -> DVec3 {
+        match self {
+            Self::Kajiya(fibre) => share * fibre.scatter(eye, light),
+            Self::Glass(_) if share < DARK => DVec3::ZERO,
+            Self::Glass(fibre) => fibre.scatter(eye, light, scatter::fibres(share, alpha)),
+        }
+    }
+
+    /// What the light of the sky is multiplied with, of which the share `share` has arrived.
+    fn under_sky(&self, eye: DVec3, share: f64, alpha: f64) -> DVec3 {
+        match self {
+            Self::Kajiya(fibre) => fibre.albedo,
+            Self::Glass(fibre) => {
+                let share = share.clamp(DARKEST_SKY, 1.0);
+                fibre.under_sky(eye, scatter::fibres(share, alpha)) / share
+            }
+        }
+    }
+}
+
+/// Less light than the smallest share that is told from none comes through no hair.
+const DARK: f64 = 4e-6;
+
+/// Less light of the sky than this keeps its colour.
+const DARKEST_SKY: f64 = 1e-3;
+
+struct Kajiya {
     tangent: DVec3,
     tilt: f64,
     albedo: DVec3,
@@ -40,14 +89,22 @@ struct Fibre {
     secondary: DVec2,
 }
 
-fn lit(lights: &Lights, self_shadow: f64, point: DVec3, eye: DVec3, fibre: &Fibre, arriving: &Arriving) -> DVec3 {
+fn lit(
+    lights: &Lights,
+    [self_shadow, alpha]: [f64; 2],
+    point: DVec3,
+    eye: DVec3,
+    fibre: &Fibre,
+    arriving: &Arriving,
+) -> DVec3 {
     let [sky, ground] = [lights.sky, lights.ground].map(|light| light.as_dvec3());
     let (mean, slope) = (0.5 * (sky + ground), 0.5 * (sky - ground));
     let around = mean.lerp(arriving.sky.w * mean + arriving.sky.y / 3.0 * slope, self_shadow).max(DVec3::ZERO);
-    lights.lights.iter().zip(arriving.lights).fold(around * fibre.albedo, |sum, (light, share)| {
+    let of_sky = around * fibre.under_sky(eye, 1.0 + self_shadow * (arriving.sky.w - 1.0), alpha);
+    lights.lights.iter().zip(arriving.lights).fold(of_sky, |sum, (light, share)| {
         let (towards, strength) = towards(light, point);
-        let strength = strength * (1.0 + self_shadow * (share - 1.0));
-        sum + light.color.as_dvec3() * strength * scatter(fibre, eye, towards)
+        let share = 1.0 + self_shadow * (share - 1.0);
+        sum + light.color.as_dvec3() * strength * fibre.scatter(eye, towards, share, alpha)
     })
 }
 
@@ -68,12 +125,14 @@ pub(super) fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {
     }
 }
 
-fn scatter(fibre: &Fibre, eye: DVec3, light: DVec3) -> DVec3 {
-    let (along_light, along_eye) = (fibre.tangent.dot(light), fibre.tangent.dot(eye));
-    let lobe = |shift, term: DVec2| term.x * highlight(along_light, along_eye, shift).max(1e-6).powf(term.y);
-    let primary = lobe(2.0 * fibre.tilt, fibre.primary);
-    let secondary = lobe(-3.0 * fibre.tilt, fibre.secondary);
-    fibre.albedo * (fibre.diffuse * perpendicular(along_light) + secondary) + primary
+impl Kajiya {
+    fn scatter(&self, eye: DVec3, light: DVec3) -> DVec3 {
+        let (along_light, along_eye) = (self.tangent.dot(light), self.tangent.dot(eye));
+        let lobe = |shift, term: DVec2| term.x * highlight(along_light, along_eye, shift).max(1e-6).powf(term.y);
+        let primary = lobe(2.0 * self.tilt, self.primary);
+        let secondary = lobe(-3.0 * self.tilt, self.secondary);
+        self.albedo * (self.diffuse * perpendicular(along_light) + secondary) + primary
+    }
 }
 
 fn highlight(along_light: f64, along_eye: f64, shift: f64) -> f64 {

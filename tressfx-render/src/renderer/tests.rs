@@ -30,12 +30,12 @@ fn structs_are_laid_out_as_in_the_wgsl() {
     let shortcut = shortcut(&mut backend, 3, false);
     let [fill, resolve, composite] = ppll.shaders();
     let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
-    for shader in [&*shade.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
+    for shader in [&*shade.kajiya.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
         shader.check_layout::<ViewUniform>().unwrap();
         shader.check_layout::<LensUniform>().unwrap();
         shader.check_layout::<LightUniform>().unwrap();
     }
-    for shader in [&*shade.open.shader, fill, depths, colors] {
+    for shader in [&*shade.kajiya.open.shader, &shade.fibre.open.shader, fill, depths, colors] {
         shader.check_layout::<SectionUniform>().unwrap();
     }
     for shader in [fill, resolve, depths, shortcut_resolve] {
@@ -74,7 +74,8 @@ fn structs_are_laid_out_as_in_the_wgsl() {
 fn every_kernel_fits_the_limits_of_webgpu() {
     let mut backend = NullBackend::default();
     let shade = Shade::new(&mut backend, true).unwrap();
-    let shade = shade.shadowed.unwrap();
+    assert!(shade.kajiya.shadowed.unwrap().shader.storage_buffers() == 4);
+    let shade = shade.fibre.shadowed.unwrap();
     for k in K_RANGE {
         let desc = PpllDesc { k, ..PpllDesc::default() };
         let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();
