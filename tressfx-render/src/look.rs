@@ -9,8 +9,8 @@ use crate::material::Material;
 
 /// What hair of some colour looks like, as fibres that scatter as glass.
 ///
-/// Parts of melanin are those of d'Eon et al. 2011 and Chiang et al. 2015; how much they differ from strand to strand and how far light gets
-/// between the strands was set by eye.
+/// What a part of melanin absorbs is as d'Eon et al. 2011 give it; how much of it there is, how much strands differ, and how far light gets between them was
+/// set by eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     /// By which it is asked for.
