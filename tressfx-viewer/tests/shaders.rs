@@ -97,6 +97,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     let both = |name| [format!("{name} false"), format!("{name} true")];
     let names = [
         "bounded",
+        "fibre",
         "follows",
         "global_shape",
         "hair_output",
