@@ -95,11 +95,11 @@ pub(crate) fn check_lights(lights: &Lights) -> Result<(), DrawError> {
     if lights.lights.len() > MAX_LIGHTS {
         return Err(DrawError::Lights(lights.lights.len()));
     }
-    let cones = lights.lights.iter().enumerate().filter_map(|(light, of)| match of.place {
+    let mut cones = lights.lights.iter().enumerate().filter_map(|(light, of)| match of.place {
         LightPlace::Point { cone: Some(cone), .. } => Some((light, cone)),
         _ => None,
     });
-    match cones.into_iter().find(|(_, cone)| !cone.is_valid()) {
+    match cones.find(|(_, cone)| !cone.is_valid()) {
         Some((light, Cone { along, inner, outer })) => Err(DrawError::Cone { light, along, inner, outer }),
         None => Ok(()),
     }

@@ -180,9 +180,9 @@ fn draws<'a>(
     view: &View,
     lod: Option<&LodDesc>,
 ) -> Vec<SectionDraw<'a>> {
-    let draw = |(strands, material)| {
+    let draw = |(strands, material): &'a (ShadedStrands, Material)| {
         let draw = SectionDraw::new(strands, material, pose);
         lod.map_or(draw, |lod| draw.lod(lod.choose(view, &draw)))
     };
-    sections.iter().map(|(strands, material)| (strands, material)).map(draw).collect()
+    sections.iter().map(draw).collect()
 }

@@ -3,7 +3,7 @@
 import package::frames::{ShadowUniform, in_frame, order_of};
 import package::grid::{GROUP, thread_index};
 import package::ribbon::is_sound;
-import package::section::SectionUniform;
+import package::section::{SectionUniform, stepped};
 
 @group(0) @binding(0) var<uniform> shadow: ShadowUniform;
 @group(0) @binding(1) var<uniform> section: SectionUniform;
@@ -35,7 +35,7 @@ fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroup
         var low = vec3(3e38);
         var high = vec3(-3e38);
         for (var vertex = 0u; vertex < section.lod.vertices; vertex++) {
-            let local = positions[min(vertex * section.lod.step, section.vertices - 1u) * section.strands + strand].xyz;
+            let local = positions[stepped(section.lod, vertex, section.vertices) * section.strands + strand].xyz;
             if is_sound(local) {
                 let at = in_frame(shadow.frames[frame], (section.pose * vec4(local, 1.0)).xyz);
                 low = min(low, at);

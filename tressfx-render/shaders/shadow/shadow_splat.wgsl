@@ -5,7 +5,7 @@ import package::frames::{SKY, ShadowGrid, ShadowFrameUniform, cell_at, in_frame,
 import package::grid::{GROUP, thread_index};
 import package::grids::{grid_of, shadow};
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, hash, strands_of};
+import package::section::{SectionUniform, hash, stepped, strands_of};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
@@ -87,8 +87,8 @@ fn shadow_splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
         return;
     }
     let strand = i % samples;
-    let vertex = i / samples * section.lod.step;
-    let next = min(vertex + section.lod.step, section.vertices - 1u);
+    let vertex = stepped(section.lod, i / samples, section.vertices);
+    let next = stepped(section.lod, i / samples + 1u, section.vertices);
     let start = posed(strand, vertex);
     let end = posed(strand, next);
     if start.w * end.w == 0.0 {

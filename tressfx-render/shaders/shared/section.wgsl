@@ -45,9 +45,14 @@ struct SectionUniform {
     tip_absorption: vec4<f32>,
 }
 
+// The vertex of the whole strand, which has so many, that a drawn one is.
+fn stepped(lod: LodUniform, vertex: u32, vertices: u32) -> u32 {
+    return min(vertex * lod.step, vertices - 1u);
+}
+
 // Strand and vertex of thread `i`, of those that draw a section; `vertices` are those of the whole strand.
 fn drawn_vertex(lod: LodUniform, i: u32, vertices: u32) -> vec2<u32> {
-    return vec2(i % lod.strands, min(i / lod.strands * lod.step, vertices - 1u));
+    return vec2(i % lod.strands, stepped(lod, i / lod.strands, vertices));
 }
 
 // How many strands have the width of all.

@@ -5,7 +5,7 @@ import package::joint::{ROUND, rise_along, tilt_of};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, on_screen, project, scale_at};
 import package::screen::view;
-import package::section::{SectionUniform, faded};
+import package::section::{SectionUniform, faded, stepped};
 
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
@@ -14,7 +14,7 @@ import package::section::{SectionUniform, faded};
 
 // The vertex of the buffers.
 fn full_vertex(vertex: u32) -> u32 {
-    return min(vertex * section.lod.step, section.vertices - 1u);
+    return stepped(section.lod, vertex, section.vertices);
 }
 
 fn is_sound_at(strand: u32, vertex: u32) -> bool {
