@@ -1,17 +1,20 @@
-//! What a frame of many characters costs the CPU, of which few are seen and awake: writing its list. Nothing is run, so no GPU is asked for.
+//! What a frame of many characters costs the CPU, of which few are seen and awake: writing its list, and recording it. Nothing is submitted.
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
 use tressfx_asset::builtin::Builtin;
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_backend_vulkan::VulkanBackend;
+use tressfx_benches::Recorder;
+use tressfx_core::backend::{Backend, Format, Run, TextureDesc};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
+    HairRenderer, Light, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, ViewDraw,
 };
 use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput};
 
@@ -26,6 +29,8 @@ const ALL: usize = 1000;
 /// A simulation for each character, and one picture.
 struct Crowd {
     characters: Vec<(HairSim, ShadedStrands)>,
+    material: Material,
+    lights: Lights,
     renderer: HairRenderer,
     targets: Targets,
     view: View,
@@ -35,19 +40,19 @@ struct Crowd {
 }
 
 impl Crowd {
-    fn new(count: usize) -> Self {
-        let mut backend = NullBackend::default();
+    fn new(backend: &mut dyn Run, count: usize) -> Self {
         let asset = GROOM.parse::<Builtin>().expect("a built-in groom").asset();
         let strands = Strands::new(&asset, &StrandOptions::default()).expect("strands");
         let info = StrandInfo::new(&strands);
-        let character = |backend: &mut NullBackend| {
+        let mut uploads = PassList::new();
+        let mut character = |backend: &mut dyn Backend| {
             let desc = SectionDesc::new(&strands, SimParams::default()).with_solver(Solver::TressFx);
-            let mut sim = HairSim::new(backend, &mut PassList::new(), &[desc], 0).expect("a simulation");
+            let mut sim = HairSim::new(backend, &mut uploads, &[desc], 0).expect("a simulation");
             sim.allow_sleep(backend, SleepParams::default()).expect("sleep");
             let section = ShadedStrands::new(backend, sim.buffers()[0], info.clone()).expect("a section");
             (sim, section)
         };
-        let characters = (0..count).map(|_| character(&mut backend)).collect();
+        let characters = (0..count).map(|_| character(backend)).collect();
         let points: Vec<_> = strands.rest_of_all().iter().map(|point| point.truncate()).collect();
         let view = Camera::around(&points, SIZE).view(SIZE).expect("a view");
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, SIZE, format));
@@ -55,9 +60,12 @@ impl Crowd {
             texture("color", Format::Rgba16F).expect("a texture"),
             texture("depth", Format::Depth32F).expect("a texture"),
         );
-        let renderer = HairRenderer::new(&mut backend, &RenderDesc::new(SIZE, Format::Rgba16F)).expect("a renderer");
-        let mut crowd = Self { characters, renderer, targets, view, apart: 4.0 * info.reach.1, frame: 0 };
-        crowd.settle();
+        let renderer = HairRenderer::new(backend, &RenderDesc::new(SIZE, Format::Rgba16F)).expect("a renderer");
+        backend.run(&uploads).expect("the uploads run");
+        let (material, lights) = (Material::default(), lights());
+        let mut crowd =
+            Self { characters, material, lights, renderer, targets, view, apart: 4.0 * info.reach.1, frame: 0 };
+        crowd.settle(backend);
         crowd
     }
 
@@ -70,7 +78,7 @@ impl Crowd {
     }
 
     /// Measurements of no motion for all; those that move wake up again.
-    fn settle(&mut self) {
+    fn settle(&mut self, backend: &mut dyn Run) {
         let mut list = PassList::new();
         for _ in 0..=SleepParams::default().measurements {
             list.clear_commands();
@@ -79,6 +87,7 @@ impl Crowd {
                 let ticket = sim.request_motion(&mut list);
                 ticket.iter().for_each(|ticket| sim.measured_motion(ticket, [0; 4]));
             }
+            backend.run(&list).expect("the frame runs");
         }
     }
 
@@ -91,20 +100,30 @@ impl Crowd {
             let report = self.characters[index].0.step(list, &StepInput::new(1.0 / 60.0, head)).expect("a step");
             awake += usize::from(!report.asleep);
         }
-        let (material, lights) = (Material::default(), Lights::default());
-        let draws: Vec<_> =
-            self.characters.iter().map(|(sim, section)| SectionDraw::new(section, &material, sim.pose())).collect();
-        let view = ViewDraw::new(&self.view, &lights, self.targets);
+        let draw = |character| section_of(character, &self.material);
+        let draws: Vec<_> = self.characters.iter().map(draw).collect();
+        let view = ViewDraw::new(&self.view, &self.lights, self.targets);
         self.renderer.draw(list, &[view], &draws).expect("a view that can be drawn");
         awake
     }
 }
 
-fn crowd(criterion: &mut Criterion) {
+fn section_of<'a>((sim, section): &'a (HairSim, ShadedStrands), material: &'a Material) -> SectionDraw<'a> {
+    SectionDraw::new(section, material, sim.pose())
+}
+
+/// A sky and three lights, all of which cast shadows.
+fn lights() -> Lights {
+    let light = |x, y, z| Light::directional(Vec3::new(x, y, z), Vec3::ONE);
+    let lights = vec![light(0.75, 0.8, 0.75), light(-0.9, 0.25, 0.6), light(-0.45, 0.65, -0.9)];
+    Lights { sky: Vec3::splat(0.2), ground: Vec3::splat(0.1), lights }
+}
+
+fn write(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("write the list of a crowd");
     let mut passes = Vec::new();
     for count in [SEEN, ALL] {
-        let mut crowd = Crowd::new(count);
+        let mut crowd = Crowd::new(&mut NullBackend::default(), count);
         let mut list = PassList::new();
         assert_eq!(crowd.write(&mut list), SEEN, "all others sleep");
         assert_eq!(crowd.renderer.drawn().sections, SEEN, "all others are unseen");
@@ -120,5 +139,20 @@ fn crowd(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, crowd);
+/// What is recorded is the same for both.
+fn record(criterion: &mut Criterion) {
+    let mut backend = match VulkanBackend::headless() {
+        Ok(backend) => backend,
+        Err(error) => return eprintln!("record the list of a crowd: skipped: {error}"),
+    };
+    let mut crowd = Crowd::new(&mut backend, SEEN);
+    let mut list = PassList::new();
+    crowd.write(&mut list);
+    let mut recorder = Recorder::new(backend);
+    criterion.bench_function(&format!("record the list of a crowd/{SEEN} seen and awake"), |bencher| {
+        bencher.iter_custom(|runs| (0..runs).map(|_| recorder.time(&list)).sum::<Duration>());
+    });
+}
+
+criterion_group!(benches, write, record);
 criterion_main!(benches);

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use tressfx_asset::builtin::Builtin;
-use tressfx_backend_vulkan::ash::vk;
-use tressfx_backend_vulkan::{EngineCommands, VulkanBackend};
+use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_wgpu::{WgpuBackend, wgpu};
+use tressfx_benches::Recorder;
 use tressfx_core::backend::{Format, Record, Run, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -94,30 +94,10 @@ fn vulkan(criterion: &mut Criterion) {
     for grooms in GROOMS {
         let mut backend = VulkanBackend::headless().expect("Vulkan");
         let list = Frames::new(&mut backend, grooms).steady(&mut backend);
-        let device = backend.device().clone();
-        let info = vk::CommandPoolCreateInfo::default().queue_family_index(backend.queue_family());
-        // SAFETY: the device lives as long as the backend; the command buffer is never submitted, and the backend is told so.
-        unsafe {
-            let pool = device.create_command_pool(&info, None).expect("a pool");
-            let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
-            let commands = device.allocate_command_buffers(&info).expect("a command buffer")[0];
-            let mut record = || {
-                device.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).expect("a reset");
-                device.begin_command_buffer(commands, &vk::CommandBufferBeginInfo::default()).expect("a beginning");
-                let before = backend.recorded();
-                let mut encoder = EngineCommands::new(&backend, commands);
-                let start = Instant::now();
-                backend.record(&mut encoder, &list).expect("a recording");
-                let time = start.elapsed();
-                device.end_command_buffer(commands).expect("an end");
-                backend.mark_discarded_after(before);
-                time
-            };
-            group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {
-                bencher.iter_custom(|runs| (0..runs).map(|_| record()).sum::<Duration>());
-            });
-            device.destroy_command_pool(pool, None);
-        }
+        let mut recorder = Recorder::new(backend);
+        group.bench_function(BenchmarkId::from_parameter(grooms), |bencher| {
+            bencher.iter_custom(|runs| (0..runs).map(|_| recorder.time(&list)).sum::<Duration>());
+        });
     }
 }
 

@@ -1,11 +1,11 @@
-//! What the benchmarks share: grooms by name, devices that can time passes, and criterion with the clock of the GPU.
-
-#![forbid(unsafe_code)]
+//! What the benchmarks share: grooms by name, devices that can time passes, an engine that records, and criterion with the clock of the GPU.
 
 mod clock;
 mod device;
 mod groom;
+mod recorder;
 
 pub use clock::GpuClock;
 pub use device::{DEVICES, Open, timed};
 pub use groom::{Failure, asset, strands};
+pub use recorder::Recorder;

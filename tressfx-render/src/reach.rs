@@ -5,7 +5,7 @@ use tressfx_core::backend::DepthOrder;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::View;
 
-use crate::lights::{LightPlace, Lights};
+use crate::lights::LightPlace;
 use crate::strands::SectionDraw;
 use crate::views::ViewDraw;
 
@@ -75,23 +75,47 @@ impl Ball {
     }
 
     /// Whether it may take light from another one.
-    fn shades(&self, other: &Self, lights: &Lights) -> bool {
+    fn shades(&self, other: &Self, light: &Casting) -> bool {
         let apart = self.center - other.center;
         let radii = self.radius + other.radius;
-        let has_sky = lights.sky != Vec3::ZERO || lights.ground != Vec3::ZERO;
-        let is_near = apart.length() <= SKY * radii;
-        is_near && has_sky
-            || lights.lights.iter().filter(|light| light.casts).any(|light| match light.place {
-                LightPlace::Directional { towards } => {
-                    let towards = towards.as_dvec3().normalize_or(DVec3::Y);
-                    apart.distance(towards * apart.dot(towards).max(0.0)) <= radii
-                }
-                LightPlace::Point { position, .. } => {
-                    let way = position.as_dvec3() - other.center;
+        let is_near = |at: DVec3| apart.distance_squared(at) <= radii * radii;
+        light.has_sky && apart.length_squared() <= (SKY * radii).powi(2)
+            || light.from.iter().any(|from| match from {
+                From::Afar(towards) => is_near(towards * apart.dot(*towards).max(0.0)),
+                From::Point(position) => {
+                    let way = position - other.center;
                     let along = apart.dot(way) / way.length_squared().max(1e-30);
-                    apart.distance(way * along.clamp(0.0, 1.0)) <= radii
+                    is_near(way * along.clamp(0.0, 1.0))
                 }
             })
+    }
+}
+
+/// Where a light is.
+#[derive(Clone, Copy, Debug)]
+enum From {
+    /// In this direction, of length 1.
+    Afar(DVec3),
+    /// At this point.
+    Point(DVec3),
+}
+
+/// The light of all views in which shadows are cast.
+#[derive(Debug, Default)]
+struct Casting {
+    has_sky: bool,
+    from: Vec<From>,
+}
+
+impl Casting {
+    fn of(views: &[ViewDraw]) -> Self {
+        let has_sky = views.iter().any(|view| view.lights.sky != Vec3::ZERO || view.lights.ground != Vec3::ZERO);
+        let lights = views.iter().flat_map(|view| &view.lights.lights).filter(|light| light.casts);
+        let from = lights.map(|light| match light.place {
+            LightPlace::Directional { towards } => From::Afar(towards.as_dvec3().normalize_or(DVec3::Y)),
+            LightPlace::Point { position, .. } => From::Point(position.as_dvec3()),
+        });
+        Self { has_sky, from: from.collect() }
     }
 }
 
@@ -111,7 +135,7 @@ fn planes(view: &View) -> [DVec4; 5] {
     [wide + x, wide - x, high + y, high - y, near].map(|plane| plane / plane.truncate().length())
 }
 
-/// The sections that a view may see, then those that may throw shadows on these, and how many of each there are.
+/// The sections that a view may see, then those that may throw shadows on these, and how many of each there are. Those without segments are left out.
 pub(crate) fn split<'a>(
     views: &[ViewDraw],
     draws: &[SectionDraw<'a>],
@@ -119,7 +143,7 @@ pub(crate) fn split<'a>(
 ) -> (Vec<SectionDraw<'a>>, Drawn) {
     let planes: Vec<_> = views.iter().filter(|seen| !seen.view.is_empty()).map(|seen| planes(seen.view)).collect();
     let (mut kept, mut seen, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
-    for draw in draws {
+    for draw in draws.iter().filter(|draw| !draw.is_empty()) {
         let ball = Ball::of(draw);
         if planes.iter().any(|planes| ball.is_seen(planes)) {
             kept.push(*draw);
@@ -130,10 +154,10 @@ pub(crate) fn split<'a>(
     }
     let (sections, hidden) = (kept.len(), unseen.len());
     if let Some(around) = Ball::around(&seen).filter(|_| has_shadows) {
-        let shades = |ball: &Ball, other: &Ball| views.iter().any(|view| ball.shades(other, view.lights));
+        let light = Casting::of(views);
         // Most shade nothing of what is seen.
-        let near = unseen.into_iter().filter(|(_, ball)| shades(ball, &around));
-        let shading = near.filter(|(_, ball)| seen.iter().any(|other| shades(ball, other)));
+        let near = unseen.into_iter().filter(|(_, ball)| ball.shades(&around, &light));
+        let shading = near.filter(|(_, ball)| seen.iter().any(|other| ball.shades(other, &light)));
         kept.extend(shading.map(|(draw, _)| *draw));
     }
     let shading = kept.len() - sections;

@@ -301,10 +301,9 @@ impl HairRenderer {
         draws: &[SectionDraw],
     ) -> std::result::Result<(), DrawError> {
         self.check(views, draws)?;
-        let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
-        self.order.check(&draws)?;
-        let (draws, drawn) = reach::split(views, &draws, self.shadows.is_some());
+        let (draws, drawn) = reach::split(views, draws, self.shadows.is_some());
         let (casting, draws) = (&draws, &draws[..drawn.sections]);
+        self.order.check(draws)?;
         self.drawn = drawn;
         self.order.begin(list, views.len(), draws);
         self.shade.begin();

@@ -34,6 +34,8 @@ pub struct Clock {
     before: [Option<(Pose, f64)>; 2],
     /// The head at the end of the last sub-step.
     simulated_head: Pose,
+    /// See [`Clock::pose`]: kept, since a groom that sleeps is asked for it in each frame.
+    pose: Pose,
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
 }
@@ -51,17 +53,18 @@ impl Clock {
     /// See [`ClockParams::validate`].
     pub fn new(params: ClockParams, bounds: Bounds) -> Result<Self, ParamError> {
         params.validate()?;
-        let last_sub_step = params.sub_step;
+        let (last_sub_step, center) = (params.sub_step, bounds.rounded_center());
         Ok(Self {
             params,
             bounds,
-            center: bounds.rounded_center(),
+            center,
             time: 0.0,
             behind: 0.0,
             last_sub_step,
             head: None,
             before: [None; 2],
             simulated_head: Pose::IDENTITY,
+            pose: drawn(center, &Pose::IDENTITY, &Pose::IDENTITY),
             velocities: None,
         })
     }
@@ -89,6 +92,7 @@ impl Clock {
     /// Asks for a reset in the next frame.
     pub fn reset(&mut self) {
         self.head = None;
+        self.pose = drawn(self.center, &self.simulated_head, &self.simulated_head);
     }
 
     /// The point of the rest pose that positions are relative to.
@@ -99,9 +103,7 @@ impl Clock {
     /// Transforms positions from after the last sub-step to the world: the translation is where the centre is now, the
     /// rotation is that of the head since that sub-step.
     pub fn pose(&self) -> Pose {
-        let head = self.head.unwrap_or(self.simulated_head);
-        let translation = carried(self.center, &head).as_vec3();
-        Pose { rotation: rotation_between(self.simulated_head.rotation, head.rotation), translation }
+        self.pose
     }
 
     /// Divides a frame of `dt` seconds, at whose end the head is at `head`, into sub-steps. Within the frame the head
@@ -147,6 +149,7 @@ impl Clock {
         }
         self.behind += simulated - f64::from(count) * length;
         self.head = Some(head);
+        self.pose = drawn(self.center, &self.simulated_head, &head);
         self.before = match frame.reset.is_none() && frame.dropped == 0.0 {
             true => [Some((last, dt)), self.before[0]],
             false => [None; 2],
@@ -164,7 +167,11 @@ impl Clock {
         // As often as there are sub-steps: a product would be rounded in another way.
         (0..count).for_each(|_| self.time += length);
         if count > 0 {
-            (self.simulated_head, self.last_sub_step) = (head, length);
+            self.last_sub_step = length;
+            if self.simulated_head != head {
+                self.simulated_head = head;
+                self.pose = drawn(self.center, &head, &head);
+            }
         }
         self.behind += dt - dropped - f64::from(count) * length;
         if dt > 0.0 {
@@ -175,7 +182,7 @@ impl Clock {
 
     /// Sub-steps in so many more seconds.
     fn count(&self, simulated: f64) -> u32 {
-        ((self.behind + simulated) / self.params.sub_step + TOLERANCE).floor() as u32
+        ((self.behind + simulated) / self.params.sub_step + TOLERANCE) as u32
     }
 
     /// The same where the head is known within the frame too: at even distances in time, it was at these poses before it came
@@ -242,6 +249,12 @@ fn corners(bounds: &Bounds) -> [Vec3; 8] {
         let (min, max) = (bounds.min, bounds.max);
         Vec3::new(pick(1, min.x, max.x), pick(2, min.y, max.y), pick(4, min.z, max.z))
     })
+}
+
+/// See [`Clock::pose`].
+fn drawn(center: Vec3, simulated: &Pose, head: &Pose) -> Pose {
+    let translation = carried(center, head).as_vec3();
+    Pose { rotation: rotation_between(simulated.rotation, head.rotation), translation }
 }
 
 /// Where the head carries a point.

@@ -330,8 +330,9 @@ impl HairSim {
     /// # Errors
     /// A parameter outside its range; nothing changes then.
     pub fn set_clock_params(&mut self, params: ClockParams) -> Result<(), SimError> {
+        self.clock.set_params(params)?;
         self.wake();
-        Ok(self.clock.set_params(params)?)
+        Ok(())
     }
 
     /// The parameters of a section.
