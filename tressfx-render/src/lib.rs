@@ -2,7 +2,7 @@
 //! pixel.
 //!
 //! ```text
-//! hair.render.shadow_bounds     compute  one thread a strand: the box of the hair as each light sees it     HairRenderer
+//! hair.render.shadow_bounds     compute  one thread eight vertices: the box of the hair as each light sees   HairRenderer
 //! hair.render.shadow_splat      compute  one thread a strand segment: what it takes of the light in cells   HairRenderer
 //! hair.render.shadow_sum        compute  one thread a row of cells: what is taken up to each                HairRenderer
 //! hair.render.shadow_sky        compute  one thread a cell: what arrives there from everywhere              HairRenderer

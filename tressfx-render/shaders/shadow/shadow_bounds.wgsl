@@ -1,4 +1,4 @@
-// The box of the hair in each frame. One thread a strand, of an even sample.
+// The box of the hair in each frame. One thread for eight vertices of a strand, of an even sample.
 
 import package::frames::{ShadowUniform, in_frame, order_of};
 import package::grid::{GROUP, thread_index};
@@ -9,6 +9,9 @@ import package::section::{SectionUniform, stepped};
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> bounds: array<atomic<u32>>;
+
+// Vertices of a thread: fewer threads wait longer for their bytes, and more of them take turns at the box.
+const PIECE: u32 = 8u;
 
 fn note(at: u32, value: f32) {
     // Most strands change nothing, and need no turn.
@@ -27,14 +30,18 @@ fn note_box(frame: u32, low: vec3<f32>, high: vec3<f32>) {
 @compute @workgroup_size(GROUP)
 fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                  @builtin(local_invocation_index) lane: u32) {
-    let strand = thread_index(group, groups, lane);
-    if strand >= min(section.shadow_strands, shadow.samples) {
+    let i = thread_index(group, groups, lane);
+    let samples = min(section.shadow_strands, shadow.samples);
+    let strand = i % samples;
+    let first = i / samples * PIECE;
+    let end = min(first + PIECE, section.lod.vertices);
+    if first >= end {
         return;
     }
     for (var frame = shadow.first; frame < shadow.end; frame++) {
         var low = vec3(3e38);
         var high = vec3(-3e38);
-        for (var vertex = 0u; vertex < section.lod.vertices; vertex++) {
+        for (var vertex = first; vertex < end; vertex++) {
             let local = positions[stepped(section.lod, vertex, section.vertices) * section.strands + strand].xyz;
             if is_sound(local) {
                 let at = in_frame(shadow.frames[frame], (section.pose * vec4(local, 1.0)).xyz);

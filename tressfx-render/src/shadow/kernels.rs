@@ -56,6 +56,9 @@ pub(super) struct Kernels {
     opaque: Pass,
 }
 
+/// Vertices of a strand that a thread of `shadow_bounds` looks at.
+const PIECE: u32 = 8;
+
 /// Strands of a section that are counted.
 fn samples(draw: &SectionDraw, desc: &ShadowDesc) -> u32 {
     draw.lod.shadow_strands(draw.strands.buffers.shape).min(desc.samples)
@@ -106,7 +109,8 @@ impl Kernels {
             ("positions", strands.buffers.positions.into()),
             ("bounds", memory.bounds.into()),
         ];
-        let grid = Grid::for_threads(samples(draw, desc), GROUP);
+        let pieces = draw.lod_uniform().vertices.div_ceil(PIECE);
+        let grid = Grid::for_threads(samples(draw, desc) * pieces, GROUP);
         self.bounds.record(list, (set, Some(strands.arriving), None), grid, &resources)
     }
 
