@@ -142,7 +142,7 @@ pub(crate) fn split<'a>(
     has_shadows: bool,
 ) -> (Vec<SectionDraw<'a>>, Drawn) {
     let planes: Vec<_> = views.iter().filter(|seen| !seen.view.is_empty()).map(|seen| planes(seen.view)).collect();
-    let (mut kept, mut seen, mut unseen) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut kept, mut seen, mut unseen) = (Vec::new(), Vec::new(), Vec::with_capacity(draws.len()));
     for draw in draws.iter().filter(|draw| !draw.is_empty()) {
         let ball = Ball::of(draw);
         if planes.iter().any(|planes| ball.is_seen(planes)) {

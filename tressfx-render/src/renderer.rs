@@ -356,8 +356,8 @@ impl HairRenderer {
             }
         }
         draws.iter().try_for_each(check_section)?;
-        let has_past = draws.iter().all(|draw| draw.is_empty() || draw.strands.past.is_some());
-        if self.velocity.is_some() && !has_past { Err(DrawError::NoPast) } else { Ok(()) }
+        let has_past = || draws.iter().all(|draw| draw.is_empty() || draw.strands.past.is_some());
+        if self.velocity.is_some() && !has_past() { Err(DrawError::NoPast) } else { Ok(()) }
     }
 
     fn check_velocity(&self, draw: &ViewDraw) -> std::result::Result<(), DrawError> {
