@@ -61,7 +61,9 @@ const FOLDED: f32 = 0.3;
 /// turn is: the walk along the strand waits for this. Between vectors that are all but opposite that of the turn is measured: there `c`
 /// is mostly rounding, and a length that followed from it would grow from fold to fold.
 fn turned_on(frame: vec4<f32>, one: vec3<f32>, other: vec3<f32>) -> vec4<f32> {
-    let to_unit = 1.5 - 0.5 * dot(frame, frame);
+    // Near 1 a step of Newton's method, which rounds less; far from it that step diverges.
+    let squared = dot(frame, frame);
+    let to_unit = select(inverseSqrt(squared), 1.5 - 0.5 * squared, abs(squared - 1.0) < 0.01);
     let c = 1.0 + dot(one, other);
     if (c < 1e-6) { return after(vec4(across(one), 0.0), frame); }
     let arc = vec4(cross(one, other), c);
