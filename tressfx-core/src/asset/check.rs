@@ -76,6 +76,9 @@ impl Domain<'_> {
     }
 }
 
+/// Name, values, values per entry, what an entry belongs to, and what it may be.
+type FloatArray<'a> = (&'static str, Option<&'a [f32]>, usize, Domain<'a>, Values);
+
 impl HairAsset {
     /// Checks that there is a strand, that no strand is empty, that every array has the length that its kind needs, and
     /// that all values are finite, no inverse mass and no thickness is negative, and transparencies and colours are from 0 to 1.
@@ -117,8 +120,8 @@ impl HairAsset {
         Err(self.error("vertices of all strands", AssetProblem::Mismatch { stated, found, of: "points are there" }))
     }
 
-    /// All arrays of floats: name, values, values per entry, what an entry belongs to, and what it may be.
-    fn float_arrays(&self) -> [(&'static str, Option<&[f32]>, usize, Domain<'_>, Values); 9] {
+    /// All arrays of floats.
+    fn float_arrays(&self) -> [FloatArray<'_>; 9] {
         use Values::{Any, NotNegative, Share};
         let vertex = Domain::Vertex(&self.counts);
         [
