@@ -3,18 +3,20 @@
 mod support;
 
 use glam::Vec3;
-use tressfx_conformance::render::{Groom, Random, Screen};
+use tressfx_conformance::render::{Groom, Random, Screen, Setup};
 use tressfx_conformance::run_and_read;
+use tressfx_conformance::scene::lights;
 use tressfx_conformance::sim::{random_asset, strands_of};
 use tressfx_core::asset::{AssetFormat, HairAsset};
-use tressfx_core::backend::{Backend, Format};
+use tressfx_core::backend::{Backend, Format, TextureDesc};
 use tressfx_core::null::NullBackend;
-use tressfx_core::pass::{Load, PassList, RasterPass};
+use tressfx_core::pass::{Command, Load, PassList, RasterPass};
+use tressfx_core::shader::{Bindings, Shader};
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_render::{
-    ColorTexture, DrawError, HairRenderer, Material, OwnLook, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
-    ShortCutDesc, Technique, TilesDesc, ViewDraw,
+    ColorTexture, DrawError, Fill, HairRenderer, Material, OwnLook, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
+    ShortCutDesc, Targets, Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
 
 use support::hair::{is_sound, material};
@@ -217,6 +219,50 @@ fn numbers_that_are_none_draw_no_such_pixels() {
         assert_eq!(spoilt.validate().is_ok(), bad == 0.5);
         let groom = Groom { own: own.clone(), material: spoilt, ..groom.clone() };
         assert!(is_sound(&screen.hair(&[&groom])), "{bad}");
+    }
+}
+
+#[test]
+fn every_pass_takes_the_widths_that_strands_bring_along() {
+    let layers = ShortCutDesc::default();
+    let techniques: [Technique; 5] = [
+        PpllDesc::default().cap(4).into(),
+        PpllDesc::default().fill(Fill::Raster).into(),
+        layers.into(),
+        layers.ordered(true).into(),
+        TilesDesc::default().into(),
+    ];
+    let groom = uneven(material());
+    for technique in techniques {
+        let mut backend = NullBackend::default();
+        let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).velocity_output(true);
+        let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+        let mut texture = |format| backend.create_texture(&TextureDesc::new("target", [64, 64], format)).unwrap();
+        let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+        let targets = targets.velocity(texture(VELOCITY_FORMAT));
+        let (buffers, mut list) = (StrandBuffers::new(&mut backend, groom.shape, Vec3::ZERO).unwrap(), PassList::new());
+        let strands = ShadedStrands::new(&mut backend, buffers, groom.info.clone()).unwrap();
+        let strands = strands.with_past(&mut backend).unwrap();
+        let strands = strands.with_own_look(&mut backend, &mut list, &groom.own).unwrap();
+        let (view, lights) = (Setup::default().camera.view([64, 64]).unwrap(), lights());
+        let draw = SectionDraw::new(&strands, &groom.material, groom.pose);
+        renderer.grow_to_predicted(&mut backend, &view, &[draw]).unwrap();
+        renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
+        let mut taking = 0;
+        for (label, command) in list.passes() {
+            let bound: Vec<(&Shader, &Bindings)> = match command {
+                Command::Compute(pass) => vec![(&pass.kernel.shader, &pass.bindings)],
+                Command::Raster(pass) => {
+                    pass.draws.iter().map(|draw| (&*draw.pipeline.shader, &draw.bindings)).collect()
+                }
+                _ => Vec::new(),
+            };
+            for (shader, bindings) in bound {
+                assert!(!bindings.names(buffers.thickness.into()), "{technique:?}: {label} takes the simulated ones");
+                taking += usize::from(shader.slots.iter().any(|slot| slot.name == "thickness"));
+            }
+        }
+        assert!(taking >= 5, "{technique:?}: shadows, fragments and motion, but {taking} passes");
     }
 }
 

@@ -164,6 +164,7 @@ impl ShadedStrands {
     }
 
     /// The same with colours and widths of their own, which are uploaded with the next run of `list`: 8 bytes a vertex of every guide for colours, 4 for widths.
+    /// Widths follow the `tip_width` of the material that they are drawn with: the frame in which it changes uploads them again.
     /// Colours need a renderer that knows of them, see [`RenderDesc::own_colors`](crate::RenderDesc::own_colors). An empty look changes nothing, another one takes the
     /// place of the one before.
     ///
@@ -225,7 +226,7 @@ impl ShadedStrands {
 
     /// Shares of the full width that they bring along, with the taper of a material: in the place of [`StrandBuffers::thickness`], for tools.
     pub fn own_thickness(&self, material: &Material) -> Option<Vec<f32>> {
-        self.own.as_ref()?.look.thickness(material.tip_width)
+        self.own.as_ref()?.shares(material)
     }
 
     /// Shares of the full width.

@@ -11,13 +11,12 @@ use tressfx_core::pass::PassList;
 use super::OwnLook;
 use crate::material::Material;
 
-/// The bits of no width: widths have not been uploaded.
-const NEVER: u32 = u32::MAX;
-
 /// Buffers of an [`OwnLook`], those that it needs.
 #[derive(Debug)]
 pub(crate) struct OwnBuffers {
-    pub(crate) look: OwnLook,
+    /// The widths alone: colours are needed no more.
+    widths: OwnLook,
+    has_color: bool,
     /// `vec2<u32>` a vertex of every guide: linear RGB and opacity as four half floats.
     pub(crate) colors: Option<BufferId>,
     /// `f32` a vertex of every guide: in the place of the thickness that is simulated with, the taper of the material included.
@@ -30,7 +29,7 @@ pub(crate) struct OwnBuffers {
 }
 
 impl OwnBuffers {
-    /// Makes the buffers and uploads the colours.
+    /// Makes the buffers and uploads colours, and widths with the usual taper.
     pub(crate) fn new(backend: &mut dyn Backend, list: &mut PassList, look: &OwnLook) -> Result<Self> {
         let ((colors, thickness), owner) = Owner::build(backend, |backend| {
             let mut storage =
@@ -42,13 +41,18 @@ impl OwnBuffers {
         if let (Some(buffer), Some(colors)) = (colors, &look.colors) {
             list.upload(buffer, 0, &colors.iter().map(packed).collect::<Vec<_>>());
         }
-        let (look, widest) = (look.clone(), look.widest());
-        Ok(Self { look, colors, thickness, uploaded: AtomicU32::new(NEVER), widest, owner })
+        let widths = OwnLook { widths: look.widths.clone(), ..OwnLook::default() };
+        let (has_color, widest, usual) = (look.has_color, look.widest(), Material::default().tip_width);
+        if let (Some(buffer), Some(shares)) = (thickness, widths.thickness(usual)) {
+            list.upload(buffer, 0, &shares);
+        }
+        let uploaded = AtomicU32::new(usual.to_bits());
+        Ok(Self { widths, has_color, colors, thickness, uploaded, widest, owner })
     }
 
     /// Whether the colours have more than opacity.
     pub(crate) fn has_color(&self) -> bool {
-        self.look.has_color
+        self.has_color
     }
 
     /// Uploads the widths where the taper is not the one that they have.
@@ -56,9 +60,13 @@ impl OwnBuffers {
         let Some(buffer) = self.thickness else { return };
         let tip_width = material.tip_width.to_bits();
         if self.uploaded.swap(tip_width, Ordering::Relaxed) != tip_width {
-            let thickness = self.look.thickness(material.tip_width).unwrap_or_default();
-            list.upload(buffer, 0, &thickness);
+            list.upload(buffer, 0, &self.shares(material).unwrap_or_default());
         }
+    }
+
+    /// Shares of the full width, with the taper of a material.
+    pub(crate) fn shares(&self, material: &Material) -> Option<Vec<f32>> {
+        self.widths.thickness(material.tip_width)
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
