@@ -17,9 +17,9 @@ use tressfx_core::shader::{Shader, ShaderSlot};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    FibreScattering, Fill, HairRenderer, Light, Lights, LodDesc, Look, MAX_LIGHTS, Material, OpaqueDepth, Pigment,
-    PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets, Technique,
-    TilesDesc, VELOCITY_FORMAT, ViewDraw,
+    FibreScattering, Fill, HairRenderer, Light, Lights, LodDesc, Look, MAX_LIGHTS, Material, OpaqueDepth, OwnLook,
+    Pigment, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets,
+    Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
 
@@ -212,6 +212,13 @@ fn everything() -> PassList {
     let desc = RenderDesc::new(size, Format::Rgba16F).velocity_output(true);
     let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
     renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets.velocity(velocity))], &[draw]).unwrap();
+    let desc = RenderDesc::new(size, Format::Rgba16F).own_colors(true);
+    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+    let own = ShadedStrands::new(&mut backend, sim.buffers()[0], StrandInfo::new(&strands)).unwrap();
+    let look = OwnLook::default().with_colors(vec![[0.5; 4]; 8 * 6]);
+    let own = own.with_own_look(&mut backend, &mut list, &look).unwrap();
+    let draw = SectionDraw::new(&own, &material, sim.pose());
+    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     list
 }
 

@@ -1,15 +1,16 @@
 //! Small grooms, a small screen, and pictures that can be held against their f64 references.
 
-use glam::{DVec4, Vec3};
+use glam::{DVec4, Vec3, Vec4};
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{DepthOrder, Format, Run, TextureDesc};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_core::strands::{Strands, relative_to};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
-    Bends, Counters, HAIR_FORMAT, HairRenderer, Lights, Lod, Material, PpllDesc, RenderDesc, SectionDraw,
-    ShadedStrands, ShadowDesc, StrandInfo, Targets, Technique, ViewDraw, reference, uniforms,
+    Bends, Counters, HAIR_FORMAT, HairRenderer, Lights, Lod, Material, OwnLook, PpllDesc, RenderDesc, SectionDraw,
+    ShadedStrands, ShadowDesc, StrandInfo, Targets, Technique, ViewDraw, reference, uniforms::SectionUniform,
 };
 
 use crate::scene::{SceneMesh, ScenePass, lights};
@@ -33,6 +34,8 @@ pub struct Groom {
     pub pose: Pose,
     /// What of it is drawn.
     pub lod: Lod,
+    /// Colours and widths that it brings along.
+    pub own: OwnLook,
 }
 
 impl Groom {
@@ -61,6 +64,29 @@ impl Groom {
             material,
             pose: Pose::IDENTITY,
             lod: Lod::FULL,
+            own: OwnLook::default(),
+        }
+    }
+
+    /// Strands about the middle of them, with what they bring along.
+    pub fn of(strands: &Strands, material: Material) -> Self {
+        let center = strands.bounds.rounded_center();
+        let copies = 1 + strands.follows as usize;
+        let arrays = |values: Vec<Vec4>| values.into_iter().map(|value| value.to_array()).collect();
+        let mut info = StrandInfo::new(strands);
+        info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= center);
+        let own = OwnLook::of(strands);
+        let taper = strands.interleave(&strands.thickness);
+        Self {
+            shape: StrandShape::of(strands),
+            positions: arrays(strands.interleave(&relative_to(center, &strands.rest_of_all()))),
+            tangents: arrays(strands.interleave(&strands.tangents.repeat(copies))),
+            thickness: own.thickness(material.tip_width).unwrap_or(taper),
+            info,
+            material,
+            pose: Pose::IDENTITY,
+            lod: Lod::FULL,
+            own,
         }
     }
 
@@ -82,14 +108,21 @@ impl Groom {
         groom
     }
 
+    fn uniform(&self) -> SectionUniform {
+        let uniform = SectionUniform::new(self.shape, &self.info, &self.material, &self.pose, &self.lod);
+        let has_widths = self.own.thickness(1.0).is_some();
+        uniform.with_own_look(&self.material, self.own.has_color(), has_widths)
+    }
+
     /// As the references take it.
     pub fn reference(&self) -> reference::Strands<'_> {
         reference::Strands {
-            uniform: uniforms::SectionUniform::new(self.shape, &self.info, &self.material, &self.pose, &self.lod),
+            uniform: self.uniform(),
             positions: &self.positions,
             tangents: &self.tangents,
             arriving: None,
             fibre: None,
+            own_colors: self.own.colors(),
             thickness: &self.thickness,
         }
     }
@@ -170,6 +203,8 @@ pub struct Setup {
     pub technique: Technique,
     /// Whether depth and coverage of the hair are drawn too.
     pub hair_output: bool,
+    /// Whether grooms may bring colours of their own along.
+    pub own_colors: bool,
     /// How shadows are made.
     pub shadows: Option<ShadowDesc>,
 }
@@ -198,13 +233,14 @@ impl Default for Setup {
             far: 50.0,
             depth: DepthOrder::Reverse,
         };
-        Self { camera, size: [96, 64], technique: Technique::default(), hair_output: false, shadows: None }
+        let technique = Technique::default();
+        Self { camera, size: [96, 64], technique, hair_output: false, own_colors: false, shadows: None }
     }
 }
 
 fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
     let desc = RenderDesc::new(setup.size, Format::Rgba16F).technique(setup.technique);
-    let desc = desc.hair_output(setup.hair_output).shadows(setup.shadows);
+    let desc = desc.hair_output(setup.hair_output).own_colors(setup.own_colors).shadows(setup.shadows);
     HairRenderer::new(backend, &desc).expect("a renderer")
 }
 
@@ -311,6 +347,7 @@ impl Screen {
         list.upload(buffers.tangents, 0, &groom.tangents);
         list.upload(buffers.thickness, 0, &groom.thickness);
         let section = ShadedStrands::new(&mut *self.backend, buffers, groom.info.clone()).expect("a section");
+        let section = section.with_own_look(&mut *self.backend, list, &groom.own).expect("buffers");
         (buffers, section)
     }
 

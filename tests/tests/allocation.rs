@@ -1,7 +1,8 @@
 //! An allocation that fails half way, whichever it is: what was made before goes again, and what was there stays as it was.
 
 use tressfx_conformance::failing::Failing;
-use tressfx_conformance::sim::random_strands;
+use tressfx_conformance::sim::{random_asset, random_strands, strands_of};
+use tressfx_core::asset::HairAsset;
 use tressfx_core::backend::{Backend, Caps, DepthOrder, Format};
 use tressfx_core::glam::Vec3;
 use tressfx_core::null::NullBackend;
@@ -9,8 +10,8 @@ use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Counters, Fill, HairRenderer, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc, StrandInfo,
-    Technique, TilesDesc,
+    Counters, Fill, HairRenderer, Material, OwnLook, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShortCutDesc,
+    StrandInfo, Technique, TilesDesc,
 };
 use tressfx_sim::{HairSim, SectionDesc, SimParams, Solver};
 
@@ -95,7 +96,15 @@ fn a_renderer_its_size_and_its_sections() {
     let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
     let (section, failures) = backend.fail_everywhere(|backend| ShadedStrands::new(backend, buffers, info.clone()));
     assert!(failures > 1, "{failures} creations");
-    let tiles = RenderDesc::new([64, 48], Format::Rgba16F).technique(TilesDesc::default());
+    let wild = HairAsset { strand_thickness: Some((0..8).map(|i| i as f32).collect()), ..random_asset(8, 8, 1) };
+    let look = OwnLook::of(&strands_of(wild, 1)).with_colors(vec![[0.5; 4]; 64]);
+    section.destroy(&mut backend);
+    let (section, failures) = backend.fail_everywhere(|backend| {
+        let section = ShadedStrands::new(backend, buffers, info.clone())?;
+        section.with_own_look(backend, &mut PassList::new(), &look)
+    });
+    assert!(failures > 6, "{failures} creations, those of the strands too");
+    let tiles = RenderDesc::new([64, 48], Format::Rgba16F).technique(TilesDesc::default()).own_colors(true);
     let mut tiles = HairRenderer::new(&mut backend, &tiles).unwrap();
     let camera = Camera { depth: DepthOrder::Standard, ..Camera::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 48]) };
     let (view, material) = (camera.view([64, 48]).unwrap(), Material::default());

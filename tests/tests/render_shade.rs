@@ -3,12 +3,13 @@
 mod support;
 
 use glam::{DVec4, Quat, Vec3};
-use tressfx_conformance::render::{Groom, Screen};
+use tressfx_conformance::render::{Groom, Random, Screen};
 use tressfx_conformance::run_and_read;
+use tressfx_conformance::sim::{random_asset, strands_of};
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
 use tressfx_render::{
-    Cone, DrawError, FibreScattering, Highlight, Light, Material, Pigment, SectionDraw, ViewDraw, reference,
+    Cone, DrawError, FibreScattering, Highlight, Light, Material, OwnLook, Pigment, SectionDraw, ViewDraw, reference,
 };
 
 use support::screen;
@@ -89,6 +90,61 @@ fn every_vertex_of_fibres_that_scatter_as_glass_is_as_in_f64() {
         eprintln!("8000 vertices: largest error {error:.2e}");
         // The table has half floats too.
         assert!(error < 2e-3, "{error}");
+    }
+}
+
+/// Strands with two followers each, and colours, opacities and widths of their own.
+fn coloured(material: Material) -> Groom {
+    let mut asset = random_asset(100, 12, 5);
+    let mut random = Random(9);
+    asset.vertex_colors = Some(asset.points.iter().map(|_| [(); 4].map(|()| random.unit())).collect());
+    asset.vertex_thickness = Some(asset.points.iter().map(|_| random.unit()).collect());
+    Groom::of(&strands_of(asset, 2), material)
+}
+
+#[test]
+fn every_vertex_with_a_colour_of_its_own_is_as_in_f64() {
+    let Some(mut screen) = screen(|setup| setup.own_colors = true) else { return };
+    let varied = Material::default().with(|m| {
+        (m.own_colors, m.tip_start) = (0.6, 0.7);
+        (m.variation, m.hue_variation) = (0.5, 0.8);
+    });
+    let of_glass = glass(Pigment::Color, 0.3, 0.3);
+    let hues = |m: &mut Material| (m.tip_start, m.hue_variation) = (0.4, 0.3);
+    // Half floats go in and come out.
+    let materials = [
+        (Material::default(), 1.2e-3),
+        (varied, 1.2e-3),
+        (Material::default().with(|m| m.own_colors = 0.0), 1.2e-3),
+        (of_glass, 2e-3),
+        (of_glass.with(|m| m.own_colors = 0.3).with(hues), 2e-3),
+        (glass(Pigment::Melanin { eumelanin: 0.3, pheomelanin: 0.1 }, 0.3, 0.2), 2e-3),
+    ];
+    for (material, most) in materials {
+        let error = error(&mut screen, &coloured(material));
+        eprintln!("3600 vertices: largest error {error:.2e}");
+        assert!(error < most, "{material:?}: {error}");
+    }
+}
+
+#[test]
+fn black_of_its_own_is_black_and_white_is_white() {
+    let Some(mut screen) = screen(|setup| setup.own_colors = true) else { return };
+    for fibre in [None, Some(FibreScattering::default())] {
+        let look = Material::default().with(|m| {
+            (m.fibre, m.variation, m.root_shade) = (fibre, 0.0, 0.0);
+            m.primary.strength = 0.0;
+        });
+        let bright = |screen: &mut Screen, part: f32| {
+            let groom = Groom::wavy(20, 8, 2, look);
+            let own = OwnLook::default().with_colors(vec![[part, part, part, 1.0]; groom.positions.len()]);
+            let colors = shaded(screen, &Groom { own, ..groom });
+            colors.iter().map(|color| color.truncate()).sum::<glam::DVec3>() / colors.len() as f64
+        };
+        let (black, gray, white) = (bright(&mut screen, 0.0), bright(&mut screen, 0.2), bright(&mut screen, 0.999));
+        // Glass mirrors light whatever its pigment is.
+        assert!(black.x < if fibre.is_none() { 1e-6 } else { 0.5 * gray.x } && black.is_finite(), "{black}");
+        assert!(white.x > 1.5 * gray.x && gray.x > black.x, "{black} {gray} {white}");
     }
 }
 

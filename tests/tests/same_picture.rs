@@ -138,6 +138,7 @@ impl Stage {
                 size: scene.size,
                 technique: Technique::default(),
                 hair_output: false,
+                own_colors: true,
                 shadows: shadows(),
             },
             view: view(scene.eye, &camera, scene.size),
@@ -207,7 +208,7 @@ fn each_scene_by_each_technique() {
     // Whatever the validation layer says fails the run of a list.
     let watched = VulkanOptions { validation: true, ..VulkanOptions::default() };
     let vulkan = VulkanBackend::headless_with(&watched).unwrap();
-    let shadowed = |setup: &mut Setup| setup.shadows = shadows();
+    let shadowed = |setup: &mut Setup| (setup.own_colors, setup.shadows) = (true, shadows());
     let mut screens = [Screen::new(wgpu, shadowed), Screen::new(Box::new(vulkan), shadowed)];
     // On the CPU both backends compile the same code; on GPUs two compilers may round in two ways.
     let is_exact = screens[0].backend.caps().is_cpu;

@@ -1,6 +1,6 @@
 //! Reading binary files: every access is checked against the bytes that are there.
 
-use tressfx_core::asset::{AssetProblem, Domain};
+use tressfx_core::asset::{AssetProblem, Domain, Values};
 
 use crate::{FileError, FileErrorKind};
 
@@ -34,24 +34,28 @@ impl<'a> Bytes<'a> {
 
     /// A finite float.
     pub(crate) fn f32(self, field: &str, offset: usize) -> Result<f32, FileError> {
-        let value = f32::from_bits(self.u32(field, offset)?);
-        if value.is_finite() {
-            return Ok(value);
-        }
-        Err(self.error(field, offset, AssetProblem::out_of_range(value, "a finite number")))
+        self.f32_in(field, offset, Values::Any)
     }
 
-    /// An array of `count` entries of `N` finite floats each. The domain says which strand and vertex an error names.
+    /// A float that is in range.
+    pub(crate) fn f32_in(self, field: &str, offset: usize, range: Values) -> Result<f32, FileError> {
+        let value = f32::from_bits(self.u32(field, offset)?);
+        range.problem(value).map_or(Ok(value), |problem| Err(self.error(field, offset, problem)))
+    }
+
+    /// An array of `count` entries of `N` floats each, which are in range. The domain says which strand and vertex an error names.
     pub(crate) fn floats<const N: usize>(
         self,
         field: &str,
         offset: usize,
         count: usize,
         domain: Domain<'_>,
+        range: Values,
     ) -> Result<Vec<[f32; N]>, FileError> {
         let bytes = self.slice(field, offset, count as u64, 4 * N as u64)?;
         let values: Vec<[f32; N]> = bytes.chunks_exact(4 * N).map(entry).collect();
-        match domain.find_not_finite(values.as_flattened(), N) {
+        let flat = values.as_flattened();
+        match domain.find_not_finite(flat, N).or_else(|| range.find_beyond(flat)) {
             None => Ok(values),
             Some((index, kind)) => Err(self.error(field, offset + 4 * index, kind)),
         }
@@ -75,6 +79,8 @@ pub(crate) struct OptionalArray {
     pub(crate) at: usize,
     /// The size of the header: no array may start before its end.
     pub(crate) header: usize,
+    /// What its values may be.
+    pub(crate) range: Values,
 }
 
 impl OptionalArray {
@@ -98,7 +104,7 @@ impl OptionalArray {
         count: usize,
         domain: Domain<'_>,
     ) -> Result<Option<Vec<[f32; N]>>, FileError> {
-        self.offset(bytes)?.map(|offset| bytes.floats(self.field, offset, count, domain)).transpose()
+        self.offset(bytes)?.map(|offset| bytes.floats(self.field, offset, count, domain, self.range)).transpose()
     }
 }
 

@@ -16,7 +16,7 @@
 //! segments: u16 per strand, which has one point more; points: f32 x 3; thickness: f32 per point; transparency: f32 per
 //! point; colour: f32 x 3 per point. All little-endian.
 
-use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, HairDefaults};
+use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, HairDefaults, Values};
 
 use crate::binary::{Bytes, scalars};
 use crate::{FileError, FileErrorKind};
@@ -36,7 +36,7 @@ const COLOR: u32 = 1 << 4;
 ///
 /// # Errors
 /// Where an array is not in the file, the points are absent, a bit is set that the format does not know, the segments do
-/// not add up to the points, or a value is not finite.
+/// not add up to the points, a value is not finite, a thickness is negative, or a colour or a transparency is not from 0 to 1.
 pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
@@ -49,10 +49,10 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let mut at = HEADER;
     let counts = counts(bytes, bits, defaults.segments, &mut at)?;
     let mut arrays = Arrays { bytes, bits, at, counts: &counts };
-    let points = arrays.next(POINTS, "points")?.unwrap_or_default();
-    let vertex_thickness = arrays.next(THICKNESS, "thickness")?.map(scalars);
-    let vertex_transparency = arrays.next(TRANSPARENCY, "transparency")?.map(scalars);
-    let colors: Option<Vec<[f32; 3]>> = arrays.next(COLOR, "colour")?;
+    let points = arrays.next(POINTS, "points", Values::Any)?.unwrap_or_default();
+    let vertex_thickness = arrays.next(THICKNESS, "thickness", Values::NotNegative)?.map(scalars);
+    let vertex_transparency = arrays.next(TRANSPARENCY, "transparency", Values::Share)?.map(scalars);
+    let colors: Option<Vec<[f32; 3]>> = arrays.next(COLOR, "colour", Values::Share)?;
     Ok(HairAsset {
         vertex_thickness,
         vertex_transparency,
@@ -73,13 +73,14 @@ fn array_bits(bytes: Bytes<'_>) -> Result<u32, FileError> {
 }
 
 fn defaults(bytes: Bytes<'_>) -> Result<HairDefaults, FileError> {
+    let share = |field, offset| bytes.f32_in(field, offset, Values::Share);
     let mut info = [0; HEADER - INFO];
     info.copy_from_slice(bytes.slice("info", INFO, 1, (HEADER - INFO) as u64)?);
     Ok(HairDefaults {
         segments: bytes.u32("default segments", 16)?,
-        thickness: bytes.f32("default thickness", 20)?,
-        transparency: bytes.f32("default transparency", 24)?,
-        color: [bytes.f32("default red", 28)?, bytes.f32("default green", 32)?, bytes.f32("default blue", 36)?],
+        thickness: bytes.f32_in("default thickness", 20, Values::NotNegative)?,
+        transparency: share("default transparency", 24)?,
+        color: [share("default red", 28)?, share("default green", 32)?, share("default blue", 36)?],
         info,
     })
 }
@@ -122,12 +123,17 @@ struct Arrays<'a> {
 
 impl Arrays<'_> {
     /// The next array, if its bit is set.
-    fn next<const N: usize>(&mut self, bit: u32, field: &str) -> Result<Option<Vec<[f32; N]>>, FileError> {
+    fn next<const N: usize>(
+        &mut self,
+        bit: u32,
+        field: &str,
+        range: Values,
+    ) -> Result<Option<Vec<[f32; N]>>, FileError> {
         if self.bits & bit == 0 {
             return Ok(None);
         }
         let points = self.bytes.u32("points", 8)? as usize;
-        let array = self.bytes.floats(field, self.at, points, Domain::Vertex(self.counts))?;
+        let array = self.bytes.floats(field, self.at, points, Domain::Vertex(self.counts), range)?;
         self.at += points * 4 * N;
         Ok(Some(array))
     }
@@ -168,5 +174,7 @@ mod tests {
         assert!(with(12, 1 << 5 | POINTS).contains("arrays (byte 12)"));
         assert!(with(0, 0).contains("magic (byte 0)"));
         assert!(with(20, f32::NAN.to_bits()).contains("default thickness (byte 20)"));
+        assert!(with(24, 2f32.to_bits()).contains("default transparency (byte 24): is 2, but must be from 0 to 1"));
+        assert!(with(32, (-1f32).to_bits()).contains("default green (byte 32)"));
     }
 }

@@ -39,6 +39,10 @@ pub struct Report {
     pub follow_radius: Option<f32>,
     /// Vertices whose inverse mass is 0.
     pub pinned_vertices: usize,
+    /// Mean colour and opacity of the vertices, RGBA as the file has them, where it has any ([`HairAsset::colors`]).
+    pub mean_color: Option<[f32; 4]>,
+    /// Least and largest thickness of a vertex, where the file has any ([`HairAsset::widths`]).
+    pub thickness: Option<[f32; 2]>,
     /// Optional arrays that the file has.
     pub arrays: Vec<&'static str>,
     /// What is unusual, though harmless.
@@ -119,6 +123,8 @@ impl Report {
             follow_count: asset.follow_count.unwrap_or(0),
             follow_radius: asset.follow_radius,
             pinned_vertices: masses.iter().filter(|&&mass| mass == 0.0).count(),
+            mean_color: asset.colors().map(|colors| mean(&colors)),
+            thickness: asset.widths().map(|widths| range(&widths)),
             arrays: arrays(asset),
             oddities: Oddities::new(asset, &points, &masses, NEGLIGIBLE * length.median),
         })
@@ -146,6 +152,15 @@ fn segment_lengths(strand: &[[f32; 3]]) -> impl Iterator<Item = f64> + '_ {
 /// The distance of two points, computed in f64.
 fn segment_length(a: [f32; 3], b: [f32; 3]) -> f64 {
     DVec3::from_array(a.map(f64::from)).distance(DVec3::from_array(b.map(f64::from)))
+}
+
+fn mean(colors: &[[f32; 4]]) -> [f32; 4] {
+    let sum = |part: usize| colors.iter().map(|color| f64::from(color[part])).sum::<f64>();
+    [0, 1, 2, 3].map(|part| (sum(part) / colors.len() as f64) as f32)
+}
+
+fn range(values: &[f32]) -> [f32; 2] {
+    values.iter().fold([f32::INFINITY, 0.0], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
 fn arrays(asset: &HairAsset) -> Vec<&'static str> {

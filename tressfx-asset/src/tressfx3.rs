@@ -21,7 +21,7 @@
 
 use std::ops::Range;
 
-use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset};
+use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, Values};
 
 use crate::binary::{Bytes, OptionalArray, scalars};
 use crate::{FileError, tressfx4};
@@ -30,17 +30,20 @@ use crate::{FileError, tressfx4};
 pub(crate) const VERSIONS: Range<f32> = 3.0..4.0;
 const HEADER: usize = 296;
 
-const VERTICES: OptionalArray = OptionalArray { field: "verticesOffset", at: 144, header: HEADER };
-const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "strandThicknessOffset", at: 148, header: HEADER };
-const STRAND_UV: OptionalArray = OptionalArray { field: "strandUVOffset", at: 152, header: HEADER };
-const VERTEX_COLOR: OptionalArray = OptionalArray { field: "vertexColorOffset", at: 156, header: HEADER };
-const GUIDE_INDEX: OptionalArray = OptionalArray { field: "guideIndexOffset", at: 160, header: HEADER };
-const VERTEX_UV: OptionalArray = OptionalArray { field: "vertexUVOffset", at: 164, header: HEADER };
+const VERTICES: OptionalArray = OptionalArray { field: "verticesOffset", at: 144, header: HEADER, range: Values::Any };
+const STRAND_THICKNESS: OptionalArray =
+    OptionalArray { field: "strandThicknessOffset", at: 148, header: HEADER, range: Values::NotNegative };
+const STRAND_UV: OptionalArray = OptionalArray { field: "strandUVOffset", at: 152, header: HEADER, range: Values::Any };
+const VERTEX_COLOR: OptionalArray =
+    OptionalArray { field: "vertexColorOffset", at: 156, header: HEADER, range: Values::Share };
+const GUIDE_INDEX: OptionalArray =
+    OptionalArray { field: "guideIndexOffset", at: 160, header: HEADER, range: Values::Any };
+const VERTEX_UV: OptionalArray = OptionalArray { field: "vertexUVOffset", at: 164, header: HEADER, range: Values::Any };
 
 /// Reads a 3.x file.
 ///
 /// # Errors
-/// Where an array is not in the file, a count is out of range, or a value is not finite.
+/// Where an array is not in the file, a count is out of range, a value is not finite, a thickness is negative, or a colour is not from 0 to 1.
 pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
@@ -59,7 +62,7 @@ pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let strands = counts.len();
     let vertices = strands * counts[0] as usize;
     let domain = Domain::Vertex(&counts);
-    let points = bytes.floats("vertices", offset, vertices, domain)?;
+    let points = bytes.floats("vertices", offset, vertices, domain, Values::Any)?;
     let guide_index = GUIDE_INDEX.offset(bytes)?;
     Ok(HairAsset {
         version: Some(version),

@@ -17,7 +17,7 @@
 
 use std::ops::Range;
 
-use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, MAX_VERTICES, MIN_VERTICES};
+use tressfx_core::asset::{AssetFormat, AssetProblem, Domain, HairAsset, MAX_VERTICES, MIN_VERTICES, Values};
 
 use crate::binary::{Bytes, OptionalArray, scalars};
 use crate::{FileError, FileErrorKind};
@@ -27,16 +27,18 @@ pub(crate) const VERSIONS: Range<f32> = 4.0..5.0;
 const HEADER: usize = 160;
 const VERSION: f32 = 4.0;
 
-const POSITION: OptionalArray = OptionalArray { field: "offsetPosition", at: 12, header: HEADER };
-const STRAND_UV: OptionalArray = OptionalArray { field: "offsetStrandUV", at: 16, header: HEADER };
-const VERTEX_UV: OptionalArray = OptionalArray { field: "offsetVertexUV", at: 20, header: HEADER };
-const STRAND_THICKNESS: OptionalArray = OptionalArray { field: "offsetStrandThickness", at: 24, header: HEADER };
-const VERTEX_COLOR: OptionalArray = OptionalArray { field: "offsetVertexColor", at: 28, header: HEADER };
+const POSITION: OptionalArray = OptionalArray { field: "offsetPosition", at: 12, header: HEADER, range: Values::Any };
+const STRAND_UV: OptionalArray = OptionalArray { field: "offsetStrandUV", at: 16, header: HEADER, range: Values::Any };
+const VERTEX_UV: OptionalArray = OptionalArray { field: "offsetVertexUV", at: 20, header: HEADER, range: Values::Any };
+const STRAND_THICKNESS: OptionalArray =
+    OptionalArray { field: "offsetStrandThickness", at: 24, header: HEADER, range: Values::NotNegative };
+const VERTEX_COLOR: OptionalArray =
+    OptionalArray { field: "offsetVertexColor", at: 28, header: HEADER, range: Values::Share };
 
 /// Reads a 4.x file.
 ///
 /// # Errors
-/// Where an array is not in the file, a count is out of range, or a value is not finite.
+/// Where an array is not in the file, a count is out of range, a value is not finite, a thickness is negative, or a colour is not from 0 to 1.
 pub fn read(name: &str, data: &[u8]) -> Result<HairAsset, FileError> {
     let bytes = Bytes { name, data };
     bytes.slice("header", 0, 1, HEADER as u64)?;
@@ -93,7 +95,7 @@ fn positions(
     vertices: usize,
     domain: Domain<'_>,
 ) -> Result<(Vec<[f32; 3]>, Vec<f32>), FileError> {
-    let values = bytes.floats::<4>("positions", offset, vertices, domain)?;
+    let values = bytes.floats::<4>("positions", offset, vertices, domain, Values::Any)?;
     if let Some(index) = values.iter().position(|value| value[3] < 0.0) {
         let kind = AssetProblem::out_of_range(values[index][3], "0 or more");
         return Err(bytes.error("inverse mass", offset + 16 * index + 12, kind));
@@ -103,7 +105,8 @@ fn positions(
 
 /// Writes an asset as a 4.x file; read again it has the same points, inverse masses, strand UVs, vertex UVs, strand
 /// thickness and vertex colours, to the bit. A [`tressfx_core::asset::Placement`] is applied, because the format cannot keep it, and so
-/// are the inverse masses that an asset without any stands for ([`HairAsset::inverse_masses`]).
+/// are the inverse masses, colours and strand thickness that an asset without any stands for ([`HairAsset::inverse_masses`], [`HairAsset::colors`],
+/// [`HairAsset::strand_widths`]): transparency becomes the opacity of colours.
 /// [`crate::dropped_by`] says what else the format cannot keep.
 ///
 /// # Errors
@@ -131,8 +134,8 @@ pub fn to_bytes(asset: &HairAsset) -> Result<Vec<u8>, FileError> {
     append(&mut out, asset, &POSITION, Some(positions.as_flattened()))?;
     append(&mut out, asset, &STRAND_UV, asset.strand_uvs.as_deref().map(<[_]>::as_flattened))?;
     append(&mut out, asset, &VERTEX_UV, asset.vertex_uvs.as_deref().map(<[_]>::as_flattened))?;
-    append(&mut out, asset, &STRAND_THICKNESS, asset.strand_thickness.as_deref())?;
-    append(&mut out, asset, &VERTEX_COLOR, asset.vertex_colors.as_deref().map(<[_]>::as_flattened))?;
+    append(&mut out, asset, &STRAND_THICKNESS, asset.strand_widths().as_deref())?;
+    append(&mut out, asset, &VERTEX_COLOR, asset.colors().as_deref().map(<[_]>::as_flattened))?;
     Ok(out)
 }
 

@@ -136,6 +136,61 @@ fn non_finite_positions_name_strand_and_vertex() {
 }
 
 #[test]
+fn colours_and_widths_out_of_range_are_named_by_their_place() {
+    let spoilt = |format: &'static str, which: usize, at_word: usize, value: f32| {
+        let (_, files) = samples::all().into_iter().find(|(name, _)| *name == format).expect("a format");
+        let (mut file, at) = (files[which].clone(), 4 * at_word);
+        file[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        let error = try_read(format, &file).expect_err("out of range");
+        assert_eq!(error.offset, Some(at as u64), "{error}");
+        error.to_string()
+    };
+    // The arrays of the samples, as they are laid out there.
+    let (last_4, thickness_4) = (samples::tressfx4(2, 3).len() / 4 - 1, 40 + 4 * 6 + 2 * 2 + 2 * 6);
+    assert!(spoilt("tressfx4", 0, last_4, 1.5).contains("offsetVertexColor (byte"));
+    assert!(spoilt("tressfx4", 0, thickness_4 + 1, -1.0).contains("offsetStrandThickness (byte"));
+    assert!(spoilt("tressfx4", 0, last_4 - 3, f32::NAN).contains("offsetVertexColor (byte"));
+    assert!(spoilt("tressfx3", 0, 74 + 3 * 6, -0.5).contains("strandThicknessOffset (byte"));
+    assert!(spoilt("hair", 1, 6, 1.5).contains("default transparency (byte 24): is 1.5"));
+    assert!(spoilt("hair", 1, 9, -0.5).contains("default blue (byte 36): is -0.5"));
+}
+
+#[test]
+fn colours_and_widths_are_written_where_the_format_holds_them() {
+    let read = |format: &'static str, file: &[u8]| try_read(format, file).expect("sound");
+    let tfx = read("tressfx4", &samples::tressfx4(2, 3));
+    let again = read("tressfx4", &tressfx4::to_bytes(&tfx).expect("written"));
+    assert_eq!(
+        (again.vertex_colors, again.strand_thickness),
+        (tfx.vertex_colors.clone(), tfx.strand_thickness.clone())
+    );
+    // Transparency becomes the opacity of colours, thickness that is alike along strands that of strands.
+    let transparency = vec![0.25; 6];
+    let hair = HairAsset {
+        vertex_transparency: Some(transparency),
+        vertex_thickness: Some(vec![2.0, 2.0, 2.0, 0.5, 0.5, 0.5]),
+        strand_thickness: None,
+        ..tfx
+    };
+    assert!(tressfx_asset::dropped_by(&hair, tressfx_asset::WriteFormat::TressFx4).is_empty());
+    let again = read("tressfx4", &tressfx4::to_bytes(&hair).expect("written"));
+    assert_eq!(again.strand_thickness, Some(vec![2.0, 0.5]));
+    let opacities = |asset: &HairAsset| asset.colors().expect("colours").iter().map(|c| c[3]).collect::<Vec<_>>();
+    assert_eq!(opacities(&again), opacities(&hair));
+    let strands = Strands::new(&again, &StrandOptions { vertices: Some(5), ..StrandOptions::default() });
+    let strands = strands.expect("strands");
+    let colors = strands.vertex_colors.as_ref().expect("they come along");
+    let widths = strands.vertex_widths.as_ref().expect("they come along");
+    for (guide, &strand) in strands.order.iter().enumerate() {
+        let of_file = &again.vertex_colors.as_ref().expect("colours")[3 * strand as usize..][..3];
+        assert_eq!([colors[5 * guide], colors[5 * guide + 4]].map(|color| color.to_array()), [of_file[0], of_file[2]]);
+        assert!(widths[5 * guide..][..5].iter().all(|&width| width == [2.0, 0.5][strand as usize]));
+    }
+    let pose = strands.pose_asset(&strands.rest, false).expect("a pose");
+    assert_eq!(pose.strand_widths().expect("alike").to_vec(), [2.0, 0.5]);
+}
+
+#[test]
 fn files_of_other_kinds_are_no_grooms() {
     for bytes in [&b""[..], b"\x89PNG\r\n\x1a\n", b"hello world, this is a letter", b"{\"asset\": {}}", &[0; 400]] {
         let error = tressfx_asset::read_bytes("hostile", bytes).expect_err("no groom");

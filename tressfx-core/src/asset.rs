@@ -6,13 +6,14 @@
 mod check;
 mod error;
 mod inverse_mass;
+mod own_look;
 mod placement;
 
 use std::fmt;
 
 use serde::Serialize;
 
-pub use check::Domain;
+pub use check::{Domain, Values};
 pub use error::{AssetError, AssetProblem};
 pub use placement::Placement;
 
@@ -92,13 +93,13 @@ pub struct HairAsset {
     pub strand_w: Option<Vec<f32>>,
     /// Texture coordinates per vertex.
     pub vertex_uvs: Option<Vec<[f32; 2]>>,
-    /// Thickness per strand.
+    /// Thickness per strand, 0 or more; in which unit files do not say.
     pub strand_thickness: Option<Vec<f32>>,
-    /// Thickness per vertex.
+    /// Thickness per vertex, 0 or more.
     pub vertex_thickness: Option<Vec<f32>>,
-    /// Transparency per vertex (0 is opaque).
+    /// Transparency per vertex, 0 to 1 (0 is opaque).
     pub vertex_transparency: Option<Vec<f32>>,
-    /// RGBA per vertex.
+    /// RGBA per vertex, 0 to 1.
     pub vertex_colors: Option<Vec<[f32; 4]>>,
     /// TressFX 3: the index of the guide, per strand.
     pub guide_index: Option<Vec<u32>>,

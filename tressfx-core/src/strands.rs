@@ -20,7 +20,7 @@ mod units;
 use glam::{Quat, Vec2, Vec3, Vec4};
 
 use crate::asset::HairAsset;
-use resample::Strand;
+use resample::Resampled;
 
 pub use bounds::Bounds;
 pub use center::relative_to;
@@ -61,6 +61,10 @@ pub struct Strands {
     pub tip_separation: f32,
     /// Texture coordinates of the root of each guide.
     pub strand_uv: Option<Vec<Vec2>>,
+    /// Colour and opacity, RGBA from 0 to 1 as the file has them, where it has any: [`HairAsset::colors`]. `guides * vertices`.
+    pub vertex_colors: Option<Vec<Vec4>>,
+    /// Thickness as the file has it, where it has any: [`HairAsset::widths`]. `guides * vertices`.
+    pub vertex_widths: Option<Vec<f32>>,
     /// Unit direction of the first edge, of each guide, that has a length.
     pub root_directions: Vec<Vec3>,
     /// The box around the rest pose of all strands, follow strands too.
@@ -81,12 +85,20 @@ impl Strands {
         asset.check()?;
         let settings = options.resolve(asset)?;
         let order = order::order(settings.guides, options.shuffle, options.seed);
+        let points = asset.placed_points();
+        let ranges: Vec<_> = asset.ranges().collect();
+        let in_order = order.iter().map(|&strand| ranges[strand as usize].clone()).collect();
+        let resampled = Resampled::new(&points, in_order, settings.vertices);
+        let masses = resampled.masses(&asset.inverse_masses());
+        let rest = resampled.values(&points).into_iter().zip(masses);
+        let colors = asset.colors().map(|colors| resampled.values(&colors));
+        let widths = asset.widths().map(|widths| resampled.values(widths.as_chunks::<1>().0));
         let mut strands = Self {
             name: asset.name.clone(),
             guides: settings.guides,
             vertices: settings.vertices,
             follows: settings.follows,
-            rest: resampled(asset, &order, settings.vertices),
+            rest: rest.map(|(point, mass)| Vec3::from(point).extend(mass)).collect(),
             rest_lengths: Vec::new(),
             rest_frames: Vec::new(),
             tangents: Vec::new(),
@@ -95,6 +107,8 @@ impl Strands {
             follow_radius: 0.0,
             tip_separation: options.tip_separation,
             strand_uv: asset.strand_uvs.as_ref().map(|uvs| order.iter().map(|&s| uvs[s as usize].into()).collect()),
+            vertex_colors: colors.map(|colors| colors.into_iter().map(Vec4::from).collect()),
+            vertex_widths: widths.map(Vec::into_flattened),
             root_directions: Vec::with_capacity(order.len()),
             bounds: Bounds::default(),
             metres_per_unit: 1.0,
@@ -169,17 +183,4 @@ impl Strands {
         }
         self.bounds = Bounds::of(self.rest_of_all().iter().map(|position| position.truncate()));
     }
-}
-
-/// The guides of an asset, placed, with the inverse mass in `w`, in the given order and of one vertex count.
-fn resampled(asset: &HairAsset, order: &[u32], vertices: u32) -> Vec<Vec4> {
-    let (points, masses) = (asset.placed_points(), asset.inverse_masses());
-    let ranges: Vec<_> = asset.ranges().collect();
-    let mut rest = Vec::with_capacity(order.len() * vertices as usize);
-    for &strand in order {
-        let range = ranges[strand as usize].clone();
-        let strand = Strand { points: &points[range.clone()], masses: &masses[range] };
-        resample::resample(strand, vertices as usize, &mut rest);
-    }
-    rest
 }

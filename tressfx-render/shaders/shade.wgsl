@@ -16,9 +16,13 @@ import package::view::{ViewUniform, towards, towards_eye};
 @group(0) @binding(4) var<storage, read_write> colors: array<vec2<u32>>;
 // As `shadow_light` leaves it.
 @if(shadows) @group(0) @binding(5) var<storage, read> arriving: array<vec4<u32>>;
+// What strands bring along, a vertex of every guide: linear RGB and opacity as four half floats.
+@if(own_colors) @group(0) @binding(7) var<storage, read> own_colors: array<vec2<u32>>;
 
 // Half floats end at 65504.
 const BRIGHTEST: f32 = 60000.0;
+// No colour is so dark that it has no logarithm.
+@if(fibre && own_colors) const DARKEST: f32 = 1e-30;
 // Less light than the smallest share that is told from none comes through no hair, and less light of the sky keeps its colour.
 const DARK: f32 = 4e-6;
 const DARKEST_SKY: f32 = 1e-3;
@@ -78,17 +82,53 @@ fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     return sum;
 }
 
-// What a fibre is made of: `shade` is from -1 to 1, a strand that is darker or brighter than others.
+// Where a vertex is on its strand, and how the strand differs from others: -1 to 1.
+struct Place {
+    // 0 at the root to 1 at the tip, and the share of the colour of the tip.
+    along: f32,
+    tip: f32,
+    shade: f32,
+    hue: f32,
+}
+
+fn place_of(strand: u32, guide: u32, vertex: u32) -> Place {
+    let along = f32(vertex) / f32(section.vertices - 1u);
+    let tip = saturate((along - section.tip_start) * section.tip_scale);
+    var hue = 0.0;
+    if section.hue_variation != 0.0 {
+        hue = section.hue_variation * strand_random(strand, guide, 2u);
+    }
+    return Place(along, tip, strand_random(strand, guide, 0u), hue);
+}
+
 @if(!fibre)
-fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
-    let albedo = mix(section.base, section.tip, along).rgb * (1.0 + section.variation * shade);
+fn fibre_at(tangent: vec3<f32>, tilt: f32, place: Place, own: vec4<f32>) -> Fibre {
+    var albedo = mix(section.base, section.tip, place.tip).rgb;
+    @if(own_colors) { albedo = mix(albedo, own.rgb, section.own_colors); }
+    albedo *= (1.0 + section.variation * place.shade) * vec3(1.0 + place.hue, 1.0, 1.0 - place.hue);
     return Fibre(tangent, tilt, albedo, section.diffuse, section.primary, section.secondary);
 }
 
 @if(fibre)
-fn fibre_at(tangent: vec3<f32>, tilt: f32, shade: f32, along: f32) -> Fibre {
-    let absorption = mix(section.absorption, section.tip_absorption, along).rgb * (1.0 - section.variation * shade);
+fn fibre_at(tangent: vec3<f32>, tilt: f32, place: Place, own: vec4<f32>) -> Fibre {
+    var absorption = mix(section.absorption, section.tip_absorption, place.tip).rgb;
+    @if(own_colors) {
+        let root = log(max(own.rgb, vec3(DARKEST)));
+        absorption = mix(absorption, section.absorption.w * root * root, section.own_colors);
+    }
+    absorption *= (1.0 - section.variation * place.shade) * vec3(1.0 - place.hue, 1.0, 1.0 + place.hue);
     return Fibre(tangent, tilt, absorption, section.variance, section.multiple);
+}
+
+@if(own_colors)
+fn own_at(guide: u32, vertex: u32) -> vec4<f32> {
+    let color = own_colors[vertex * section.guides + guide];
+    return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
+}
+
+@if(!own_colors)
+fn own_at(guide: u32, vertex: u32) -> vec4<f32> {
+    return vec4(1.0);
 }
 
 @compute @workgroup_size(GROUP)
@@ -102,13 +142,14 @@ fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) group
     let strand = drawn.x;
     let i = drawn.y * section.strands + strand;
     let guide = strand % section.guides;
-    let along = f32(drawn.y) / f32(section.vertices - 1u);
+    let place = place_of(strand, guide, drawn.y);
+    let own = own_at(guide, drawn.y);
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));
-    let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, along));
-    let fibre = fibre_at(tangent, tilt, strand_random(strand, guide, 0u), along);
-    let opacity = mix(section.base.a, section.tip.a, along);
+    let skin = mix(1.0 - section.root_shade, 1.0, smoothstep(0.0, section.root_extent, place.along));
+    let fibre = fibre_at(tangent, tilt, place, own);
+    let opacity = mix(section.base.a, section.tip.a, place.along) * own.a;
     var color = clamp(skin * lit(point, fibre, i), vec3(0.0), vec3(BRIGHTEST));
     if !is_sound(color) {
         color = vec3(0.0);

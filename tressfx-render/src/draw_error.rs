@@ -62,6 +62,9 @@ pub enum DrawError {
     /// Strands have no room for where they were.
     #[error("hair.render: strands have no room for the positions of the frame before (`ShadedStrands::with_past`)")]
     NoPast,
+    /// Strands bring colours of their own along that the renderer knows nothing of.
+    #[error("hair.render: strands bring colours of their own along, the renderer was made without `own_colors`")]
+    OwnColors,
     /// The matrices of the frame before, or the jitter of a view, are not finite.
     #[error("hair.render: the matrices of the frame before, or the jitter, hold numbers that are not finite")]
     PreviousView,

@@ -6,7 +6,9 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::material::Material;
-use crate::scattering::{MAX_ABSORPTION, Shape, absorption_of_color, absorption_of_melanin, color_of_absorption};
+use crate::scattering::{
+    MAX_ABSORPTION, Shape, absorption_of_color, absorption_of_melanin, color_of_absorption, pigmentation,
+};
 
 /// What takes light within a fibre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -99,6 +101,12 @@ impl Material {
         let Some(fibre) = self.fibre else { return [Vec3::ZERO; 2] };
         let of_color = |color| absorption_of_color(color, fibre.azimuthal_roughness);
         fibre.pigment.absorption().map_or([self.base_color, self.tip_color].map(of_color), |absorption| [absorption; 2])
+    }
+
+    /// Absorption in a radius of the fibre, as a multiple of the square of the logarithm of the colour that hair in bulk should have; 0 where fibres do not scatter
+    /// as glass.
+    pub(crate) fn pigmentation(&self) -> f32 {
+        self.fibre.map_or(0.0, |fibre| pigmentation(fibre.azimuthal_roughness))
     }
 
     /// What the table of the fibre depends on; none where fibres do not scatter as glass.

@@ -33,10 +33,16 @@ pub struct Material {
     pub tip_opacity: f32,
     /// Colour at the root.
     pub base_color: Vec3,
-    /// Colour at the tip; in between it changes evenly.
+    /// Colour at the tip; from `tip_start` on it changes evenly.
     pub tip_color: Vec3,
+    /// Share of a strand's length, from the root, that has the colour of the root.
+    pub tip_start: f32,
+    /// How much of the colours that strands bring along ([`OwnLook`](crate::OwnLook)) is seen in the place of those of the material.
+    pub own_colors: f32,
     /// How much the brightness differs from strand to strand.
     pub variation: f32,
+    /// How much the hue differs from strand to strand: redder or bluer.
+    pub hue_variation: f32,
     /// Share of light that is scattered in all directions around the fibre (Kajiya and Kay).
     pub diffuse: f32,
     /// Light that the surface mirrors, white, shifted towards the root (Marschner's R).
@@ -69,7 +75,10 @@ impl Default for Material {
             tip_opacity: 0.8,
             base_color: Vec3::new(0.105, 0.048, 0.024),
             tip_color: Vec3::new(0.20, 0.10, 0.05),
+            tip_start: 0.0,
+            own_colors: 1.0,
             variation: 0.35,
+            hue_variation: 0.0,
             diffuse: 0.42,
             primary: Highlight { strength: 0.15, exponent: 90.0 },
             secondary: Highlight { strength: 1.6, exponent: 20.0 },
@@ -117,7 +126,10 @@ impl Material {
             ("tip_opacity", self.tip_opacity, 0.0..=1.0),
             ("base_color", color(self.base_color), 0.0..=1.0),
             ("tip_color", color(self.tip_color), 0.0..=1.0),
+            ("tip_start", self.tip_start, 0.0..=1.0),
+            ("own_colors", self.own_colors, 0.0..=1.0),
             ("variation", self.variation, 0.0..=1.0),
+            ("hue_variation", self.hue_variation, 0.0..=1.0),
             ("diffuse", self.diffuse, 0.0..=4.0),
             ("primary.strength", self.primary.strength, 0.0..=4.0),
             ("primary.exponent", self.primary.exponent, 1.0..=1000.0),

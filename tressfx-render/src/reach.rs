@@ -57,7 +57,7 @@ struct Ball {
 impl Ball {
     fn of(draw: &SectionDraw) -> Self {
         let (strands, center) = (draw.strands, draw.pose.translation.as_dvec3());
-        let fibre = strands.info.radius(draw.material) * draw.lod.widening(strands.buffers.shape);
+        let fibre = strands.radius(draw.material) * draw.lod.widening(strands.buffers.shape);
         Self { center, radius: f64::from(strands.reach) + f64::from(fibre) }
     }
 

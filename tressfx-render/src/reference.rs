@@ -80,6 +80,8 @@ pub struct Strands<'a> {
     pub arriving: Option<&'a [Arriving]>,
     /// What fibres that scatter as glass look up; none where the material has none.
     pub fibre: Option<&'a FibreTable>,
+    /// As [`OwnLook::colors`](crate::OwnLook::colors).
+    pub own_colors: Option<&'a [[f32; 4]]>,
     /// As [`StrandBuffers::thickness`](tressfx_core::strand_buffers::StrandBuffers::thickness).
     pub thickness: &'a [f32],
 }

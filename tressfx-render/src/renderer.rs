@@ -41,6 +41,8 @@ pub struct RenderDesc {
     pub hair_output: bool,
     /// Whether the motion of hair on the screen is written too: see [`Targets::velocity`].
     pub velocity_output: bool,
+    /// Whether strands may bring colours of their own along: see [`ShadedStrands::with_own_look`](crate::ShadedStrands::with_own_look).
+    pub own_colors: bool,
     /// How shadows are made; none lights every strand as if it were alone.
     pub shadows: Option<ShadowDesc>,
 }
@@ -50,7 +52,7 @@ impl RenderDesc {
     pub fn new(size: [u32; 2], target: Format) -> Self {
         let shadows = Some(ShadowDesc::default());
         let technique = Technique::default();
-        Self { size, target, technique, hair_output: false, velocity_output: false, shadows }
+        Self { size, target, technique, hair_output: false, velocity_output: false, own_colors: false, shadows }
     }
 
     /// The same with other shadows, or with none.
@@ -76,6 +78,12 @@ impl RenderDesc {
     #[must_use]
     pub fn velocity_output(self, velocity_output: bool) -> Self {
         Self { velocity_output, ..self }
+    }
+
+    /// The same with or without strands that bring colours of their own along, for which kernels of their own are compiled. What does not ask for it pays nothing.
+    #[must_use]
+    pub fn own_colors(self, own_colors: bool) -> Self {
+        Self { own_colors, ..self }
     }
 
     fn output(&self) -> Output {
@@ -158,7 +166,7 @@ impl HairRenderer {
             let order = desc.technique.make(backend, desc.size, desc.output())?;
             let velocity = desc.velocity_output.then(|| Velocity::new(backend, desc.size)).transpose()?;
             let shadows = desc.shadows.map(|desc| Shadows::new(backend, &desc)).transpose()?;
-            let shade = Shade::new(backend, shadows.is_some())?;
+            let shade = Shade::new(backend, shadows.is_some(), desc.own_colors)?;
             Ok::<_, Error>((order, velocity, Views::new(backend)?, shadows, shade))
         })?;
         Ok(Self { desc: *desc, views, shadows, cast: None, shade, order, velocity, drawn: Drawn::default(), owner })
@@ -276,7 +284,7 @@ impl HairRenderer {
         let Some(shadows) = &mut self.shadows else { return Ok(()) };
         shadows.begin();
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
-        draws.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        draws.iter().for_each(|draw| draw.upload(list));
         let has_any = shadows.passes(list, 0, lights, &draws)?;
         self.cast = Some((lights.clone(), has_any));
         Ok(())
@@ -304,6 +312,9 @@ impl HairRenderer {
         let (draws, drawn) = reach::split(views, draws, self.shadows.is_some());
         let (casting, draws) = (&draws, &draws[..drawn.sections]);
         self.order.check(draws)?;
+        if !self.desc.own_colors && draws.iter().any(|draw| draw.strands.own_colors().is_some()) {
+            return Err(DrawError::OwnColors);
+        }
         self.drawn = drawn;
         self.order.begin(list, views.len(), draws);
         self.shade.begin();
@@ -316,7 +327,7 @@ impl HairRenderer {
             return Ok(());
         }
         self.views.upload(list, views);
-        casting.iter().for_each(|draw| list.upload(draw.strands.uniform, 0, &[draw.uniform()]));
+        casting.iter().for_each(|draw| draw.upload(list));
         draws.iter().for_each(|draw| self.shade.upload(list, draw));
         // What arrives does not depend on the eye: views in the same light share it.
         let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));

@@ -23,6 +23,8 @@ mod table;
 mod traced;
 
 pub(crate) use longitudinal::{lobe, variances};
-pub(crate) use pigment::{MAX_ABSORPTION, absorption_of_color, absorption_of_melanin, color_of_absorption};
+pub(crate) use pigment::{
+    MAX_ABSORPTION, absorption_of_color, absorption_of_melanin, color_of_absorption, pigmentation,
+};
 pub use table::FibreTable;
 pub(crate) use table::{ENTRIES, SHIFTS, Shape};

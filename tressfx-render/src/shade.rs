@@ -24,13 +24,31 @@ pub(crate) struct Kernels {
 }
 
 impl Kernels {
-    fn new(backend: &mut dyn Backend, has_shadows: bool, fibre: bool) -> Result<Self> {
+    fn new(backend: &mut dyn Backend, has_shadows: bool, [fibre, own_colors]: [bool; 2]) -> Result<Self> {
         let root = ("shade", include_str!("../shaders/shade.wgsl"));
         let mut kernel = |shadows| {
-            let specialization = Specialization::new().feature("shadows", shadows).feature("fibre", fibre);
+            let features = [("shadows", shadows), ("fibre", fibre), ("own_colors", own_colors)];
+            let none = Specialization::new();
+            let specialization = features.into_iter().fold(none, |made, (name, on)| made.feature(name, on));
             compute(backend, "hair.render.shade", root, &LIBRARY, &specialization)
         };
         Ok(Self { open: kernel(false)?, shadowed: has_shadows.then(|| kernel(true)).transpose()? })
+    }
+}
+
+/// The kernels of strands that bring colours along, or of those that do not.
+#[derive(Debug)]
+pub(crate) struct Ways {
+    /// Kajiya and Kay.
+    pub(crate) kajiya: Kernels,
+    /// Fibres that scatter as glass.
+    pub(crate) fibre: Kernels,
+}
+
+impl Ways {
+    fn new(backend: &mut dyn Backend, has_shadows: bool, own_colors: bool) -> Result<Self> {
+        let mut kernels = |fibre| Kernels::new(backend, has_shadows, [fibre, own_colors]);
+        Ok(Self { kajiya: kernels(false)?, fibre: kernels(true)? })
     }
 }
 
@@ -39,19 +57,19 @@ type MadeTable = (Shape, Vec<[u32; 4]>, bool);
 
 #[derive(Debug)]
 pub(crate) struct Shade {
-    /// Kajiya and Kay.
-    pub(crate) kajiya: Kernels,
-    /// Fibres that scatter as glass.
-    pub(crate) fibre: Kernels,
+    pub(crate) plain: Ways,
+    /// For strands that bring colours along.
+    pub(crate) own: Option<Ways>,
     tables: Vec<MadeTable>,
     /// By view, section, and whether it is shadowed and scatters as glass.
     bound: Bound<(usize, BufferId, [bool; 2])>,
 }
 
 impl Shade {
-    pub(crate) fn new(backend: &mut dyn Backend, has_shadows: bool) -> Result<Self> {
-        let [kajiya, fibre] = [false, true].map(|fibre| Kernels::new(backend, has_shadows, fibre));
-        Ok(Self { kajiya: kajiya?, fibre: fibre?, tables: Vec::new(), bound: Bound::new() })
+    pub(crate) fn new(backend: &mut dyn Backend, has_shadows: bool, own_colors: bool) -> Result<Self> {
+        let plain = Ways::new(backend, has_shadows, false)?;
+        let own = own_colors.then(|| Ways::new(backend, has_shadows, true)).transpose()?;
+        Ok(Self { plain, own, tables: Vec::new(), bound: Bound::new() })
     }
 
     pub(crate) fn begin(&mut self) {
@@ -81,7 +99,9 @@ impl Shade {
         is_shadowed: bool,
     ) -> Result<()> {
         let (strands, is_fibre) = (draw.strands, draw.material.fibre.is_some());
-        let kernels = if is_fibre { &self.fibre } else { &self.kajiya };
+        let own_colors = strands.own_colors();
+        let ways = self.own.as_ref().filter(|_| own_colors.is_some()).unwrap_or(&self.plain);
+        let kernels = if is_fibre { &ways.fibre } else { &ways.kajiya };
         let shadowed = kernels.shadowed.as_ref().filter(|_| is_shadowed);
         let kernel = shadowed.unwrap_or(&kernels.open);
         let key = (view.index, strands.colors, [shadowed.is_some(), is_fibre]);
@@ -95,6 +115,7 @@ impl Shade {
             ];
             resources.extend(shadowed.map(|_| ("arriving", strands.arriving.into())));
             resources.extend(is_fibre.then(|| ("fibre_table", strands.fibre_table.into())));
+            resources.extend(own_colors.map(|colors| ("own_colors", colors.into())));
             kernel.bind(&resources)
         })?;
         list.compute(kernel, &bindings, Grid::for_threads(draw.vertices(), GROUP));

@@ -6,13 +6,14 @@ use tressfx_core::error::{Error, Result};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
-use tressfx_core::strand_buffers::StrandBuffers;
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
 use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
+use crate::own_look::{OwnBuffers, OwnLook};
 use crate::reach;
 use crate::scattering::ENTRIES;
 use crate::uniforms::{LodUniform, SectionUniform};
@@ -122,6 +123,8 @@ pub struct ShadedStrands {
     pub(crate) reach: f32,
     /// Where the strands were in the frame before, where that is kept.
     pub(crate) past: Option<Past>,
+    /// Colours and widths that they bring along.
+    own: Option<OwnBuffers>,
     owner: Owner,
 }
 
@@ -131,25 +134,18 @@ impl ShadedStrands {
     /// # Errors
     /// What the backend says when it cannot make a buffer of that size.
     pub fn new(backend: &mut dyn Backend, buffers: StrandBuffers, mut info: StrandInfo) -> Result<Self> {
-        let shape = buffers.shape;
-        let vertex_bytes = |bytes: u64, count: u32| (bytes * u64::from(count)).max(16);
         let made = Owner::build(backend, |backend| {
             let uniform = BufferDesc::uniform("hair.render.section", size_of::<SectionUniform>() as u64);
-            let colors = vertex_bytes(8, shape.strand_vertices());
-            let arriving = vertex_bytes(16, shape.strand_vertices());
-            Ok::<_, Error>([
-                backend.create_buffer(&uniform)?,
-                backend.create_buffer(&BufferDesc::storage("hair.render.colors", colors))?,
-                backend.create_buffer(&BufferDesc::storage("hair.render.arriving", arriving))?,
-                backend.create_buffer(&BufferDesc::storage("hair.render.fibre_table", 16 * ENTRIES as u64))?,
-            ])
+            let uniform = backend.create_buffer(&uniform)?;
+            let table = BufferDesc::storage("hair.render.fibre_table", 16 * ENTRIES as u64);
+            Ok::<_, Error>((uniform, lit(backend, buffers.shape)?, backend.create_buffer(&table)?))
         });
-        let ([uniform, colors, arriving, fibre_table], owner) = made?;
+        let ((uniform, [colors, arriving], fibre_table), owner) = made?;
         info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= buffers.center);
         let sphere = sphere(&info);
         // The head turns around the centre of the buffers.
         let reach = info.reach.0.distance(buffers.center) + info.reach.1;
-        Ok(Self { buffers, info, uniform, colors, arriving, fibre_table, sphere, reach, past: None, owner })
+        Ok(Self { buffers, info, uniform, colors, arriving, fibre_table, sphere, reach, past: None, own: None, owner })
     }
 
     /// The same with room for the positions of the frame before, 16 bytes a vertex: for renderers that write the motion of hair, see
@@ -165,6 +161,45 @@ impl ShadedStrands {
                 Err(error)
             }
         }
+    }
+
+    /// The same with colours and widths of their own, which are uploaded with the next run of `list`: 8 bytes a vertex of every guide for colours, 4 for widths.
+    /// Widths follow the `tip_width` of the material that they are drawn with: the frame in which it changes uploads them again.
+    /// Colours need a renderer that knows of them, see [`RenderDesc::own_colors`](crate::RenderDesc::own_colors). An empty look changes nothing, another one takes the
+    /// place of the one before.
+    ///
+    /// # Errors
+    /// A look of other strands, by their counts, or what the backend says when it cannot make a buffer of that size; the strands are freed then.
+    pub fn with_own_look(mut self, backend: &mut dyn Backend, list: &mut PassList, look: &OwnLook) -> Result<Self> {
+        if look.is_empty() {
+            return Ok(self);
+        }
+        let vertices = self.buffers.shape.guide_vertices() as usize;
+        let made = match look.lengths().find(|&length| length != vertices) {
+            Some(length) => Err(other_strands(length, vertices)),
+            None => self.renew(backend).and_then(|()| OwnBuffers::new(backend, list, look)),
+        };
+        match made {
+            Ok(own) => {
+                self.own.take().into_iter().for_each(|before| before.destroy(backend));
+                Ok(Self { own: Some(own), ..self })
+            }
+            Err(error) => {
+                self.destroy(backend);
+                Err(error)
+            }
+        }
+    }
+
+    /// Makes the buffers anew by which renderers know what they have bound.
+    fn renew(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        let (before, shape) = ([self.colors, self.arriving], self.buffers.shape);
+        [self.colors, self.arriving] = self.owner.change(backend, |backend| {
+            let made = lit(backend, shape)?;
+            before.into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+            Ok::<_, Error>(made)
+        })?;
+        Ok(())
     }
 
     /// Ends a frame: writes a copy of the positions, for the motion of the next frame. `pose` is the one that they were drawn with. It comes behind
@@ -184,6 +219,26 @@ impl ShadedStrands {
         self.past.iter_mut().for_each(Past::forget);
     }
 
+    /// Colours that they bring along, `vec2<u32>` a vertex of every guide: linear RGB and opacity as four half floats. An engine may write them with passes of its own.
+    pub fn own_colors(&self) -> Option<BufferId> {
+        self.own.as_ref()?.colors
+    }
+
+    /// Shares of the full width that they bring along, with the taper of a material: in the place of [`StrandBuffers::thickness`], for tools.
+    pub fn own_thickness(&self, material: &Material) -> Option<Vec<f32>> {
+        self.own.as_ref()?.shares(material)
+    }
+
+    /// Shares of the full width.
+    pub(crate) fn thickness(&self) -> BufferId {
+        self.own.as_ref().and_then(|own| own.thickness).unwrap_or(self.buffers.thickness)
+    }
+
+    /// Radius of the thickest fibre in the unit of the positions.
+    pub(crate) fn radius(&self, material: &Material) -> f32 {
+        self.info.radius(material) * self.own.as_ref().map_or(1.0, |own| own.widest)
+    }
+
     /// What the module `strands` of the shaders binds.
     pub(crate) fn bindings(&self, view: &BoundView, scene_depth: TextureId) -> [(&'static str, Binding); 6] {
         [
@@ -191,7 +246,7 @@ impl ShadedStrands {
             ("section", self.uniform.into()),
             ("positions", self.buffers.positions.into()),
             ("colors", self.colors.into()),
-            ("thickness", self.buffers.thickness.into()),
+            ("thickness", self.thickness().into()),
             ("scene_depth", scene_depth.into()),
         ]
     }
@@ -206,11 +261,25 @@ impl ShadedStrands {
         self.arriving
     }
 
-    /// Frees what [`ShadedStrands::new`] and [`ShadedStrands::with_past`] made.
+    /// Frees what [`ShadedStrands::new`] and what the functions behind it made.
     pub fn destroy(self, backend: &mut dyn Backend) {
+        self.own.into_iter().for_each(|own| own.destroy(backend));
         self.past.into_iter().for_each(|past| past.destroy(backend));
         self.owner.destroy(backend);
     }
+}
+
+/// Colours, and what arrives of the light.
+fn lit(backend: &mut dyn Backend, shape: StrandShape) -> Result<[BufferId; 2]> {
+    let mut each = |label, bytes: u64| {
+        let bytes = (bytes * u64::from(shape.strand_vertices())).max(16);
+        backend.create_buffer(&BufferDesc::storage(label, bytes))
+    };
+    Ok([each("hair.render.colors", 8)?, each("hair.render.arriving", 16)?])
+}
+
+fn other_strands(found: usize, vertices: usize) -> Error {
+    Error::rule("hair.render.own_look", format!("a look for {found} vertices, the guides have {vertices}"))
 }
 
 /// A section in a frame.
@@ -257,7 +326,16 @@ impl<'a> SectionDraw<'a> {
 
     /// What the shaders are given.
     pub fn uniform(&self) -> SectionUniform {
-        SectionUniform::new(self.strands.buffers.shape, &self.strands.info, self.material, &self.pose, &self.lod)
+        let strands = self.strands;
+        let uniform = SectionUniform::new(strands.buffers.shape, &strands.info, self.material, &self.pose, &self.lod);
+        let Some(own) = &strands.own else { return uniform };
+        uniform.with_own_look(self.material, own.has_color(), own.thickness.is_some())
+    }
+
+    /// Uploads what every pass over the section is given.
+    pub(crate) fn upload(&self, list: &mut PassList) {
+        list.upload(self.strands.uniform, 0, &[self.uniform()]);
+        self.strands.own.iter().for_each(|own| own.upload(list, self.material));
     }
 
     pub(crate) fn is_empty(&self) -> bool {

@@ -142,10 +142,18 @@ gpu_struct! {
         pub multiple: f32,
         /// Strands that are counted for shadows at most.
         pub shadow_strands: u32,
-        /// Absorption in a radius of the fibre at the root, and 0.
+        /// Absorption in a radius of the fibre at the root; and what it is as a multiple of the square of the logarithm of a colour.
         pub absorption: [f32; 4],
-        /// At the tip.
+        /// Absorption at the tip, and 0.
         pub tip_absorption: [f32; 4],
+        /// Share of a strand, from the root, that has the colour of the root.
+        pub tip_start: f32,
+        /// 1 / (1 - tip_start).
+        pub tip_scale: f32,
+        /// Hue that differs from strand to strand.
+        pub hue_variation: f32,
+        /// How much of the colours that strands bring along is seen.
+        pub own_colors: f32,
     }
 }
 
@@ -243,8 +251,22 @@ impl SectionUniform {
             variance: variances(f64::from(roughness))[0] as f32,
             multiple: material.fibre.map_or(0.0, |fibre| fibre.multiple),
             shadow_strands: lod.shadow_strands(shape),
-            absorption: with(absorption, 0.0),
+            absorption: with(absorption, material.pigmentation()),
             tip_absorption: with(tip_absorption, 0.0),
+            tip_start: material.tip_start,
+            tip_scale: 1.0 / (1.0 - material.tip_start).max(1e-6),
+            hue_variation: material.hue_variation / apart,
+            own_colors: 0.0,
+        }
+    }
+
+    /// The same for strands that bring colours and widths along: the taper is in their widths.
+    #[must_use]
+    pub fn with_own_look(self, material: &Material, has_color: bool, has_widths: bool) -> Self {
+        Self {
+            own_colors: if has_color { material.own_colors } else { 0.0 },
+            tip_width: if has_widths { 0.0 } else { self.tip_width },
+            ..self
         }
     }
 }

@@ -166,6 +166,12 @@ pub(crate) struct Render {
     /// How fibres scatter light, with the colours that the hair has; without it, as the look and the parameters say
     #[arg(long, value_enum)]
     pub(crate) scattering: Option<Scattering>,
+    /// A picture over the roots, by their texture coordinates, in the place of the colours of the hair
+    #[arg(long, value_name = "FILE.png|jpg")]
+    pub(crate) root_texture: Option<PathBuf>,
+    /// A picture along the strands, from the root at its left to the tip; each guide takes one of its rows by chance
+    #[arg(long, value_name = "FILE.png|jpg")]
+    pub(crate) strand_texture: Option<PathBuf>,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
@@ -230,6 +236,9 @@ pub(crate) struct Shaders {
     pub(crate) follow: Option<u32>,
     #[command(flatten)]
     pub(crate) oit: Oit,
+    /// Write the kernels for strands that bring colours of their own along too, though this groom has none
+    #[arg(long)]
+    pub(crate) own_colors: bool,
     /// Write the kernels of a renderer that writes depth and coverage of the hair too
     #[arg(long)]
     pub(crate) hair_output: bool,

@@ -38,6 +38,12 @@ fn print(report: &Report) -> std::io::Result<()> {
     say(format_args!("  bounds     {} to {}", bounds.min, bounds.max))?;
     say(format_args!("  unit       {unit} m (from the size of the groom)"))?;
     say(format_args!("  follow     {} a guide", report.follow_count))?;
+    if let Some([r, g, b, opacity]) = report.mean_color {
+        say(format_args!("  colour     {r:.3}, {g:.3}, {b:.3} (sRGB) in the mean, opacity {opacity:.3}"))?;
+    }
+    if let Some([low, high]) = report.thickness {
+        say(format_args!("  thickness  {low} to {high}"))?;
+    }
     if !report.arrays.is_empty() {
         say(format_args!("  also holds {}", report.arrays.join(", ")))?;
     }

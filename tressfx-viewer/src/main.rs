@@ -14,6 +14,7 @@ mod info;
 mod lod;
 mod motion;
 mod oit;
+mod own_look;
 mod params;
 mod passes;
 mod picture;

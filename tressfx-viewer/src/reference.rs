@@ -47,7 +47,7 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
     studio.take_stock(run, tickets.counters)?;
     let scene: Vec<DVec3> = texels(&run.fetch(tickets.color)?).map(|texel| texel.as_dvec4().truncate()).collect();
     let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&run.fetch(tickets.depth)?);
-    let strands = strands(run, &tickets)?;
+    let strands = strands(run, studio, &tickets)?;
     let light = match args.reference_light {
         ReferenceLight::Given => None,
         ReferenceLight::Traced => Some(Unshaded::new(run, studio)?),
@@ -95,11 +95,12 @@ pub(crate) fn request_colors(list: &mut PassList, run: &Run, studio: &Studio) ->
         .collect()
 }
 
-fn strands(run: &mut Run, tickets: &Tickets) -> Result<Vec<Strands>> {
+fn strands(run: &mut Run, studio: &Studio, tickets: &Tickets) -> Result<Vec<Strands>> {
     let mut sections = Vec::new();
     for (index, (&positions, &colors)) in tickets.positions.iter().zip(&tickets.colors).enumerate() {
         let groom = &run.groom.sections[index];
-        let thickness = groom.interleave(&groom.thickness);
+        let (shaded, material) = &studio.sections[index];
+        let thickness = shaded.own_thickness(material).unwrap_or_else(|| groom.interleave(&groom.thickness));
         let positions = bytemuck::pod_collect_to_vec(&run.fetch(positions)?);
         let colors = texels(&run.fetch(colors)?).map(|color| color.to_array()).collect();
         sections.push(Strands { positions, colors, thickness });

@@ -12,7 +12,7 @@ use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
-use tressfx_render::{HairRenderer, RenderDesc};
+use tressfx_render::{HairRenderer, OwnLook, RenderDesc};
 use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams};
 
 use crate::cli;
@@ -128,7 +128,8 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     sim.allow_sleep(&mut backend, SleepParams::default())?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
-    let desc = desc.velocity_output(true);
+    let own_colors = OwnLook::of(&groom.sections[0]).colors().is_some();
+    let desc = desc.velocity_output(true).own_colors(own_colors || args.own_colors);
     HairRenderer::new(&mut backend, &desc)?;
     Ok(backend.shaders)
 }

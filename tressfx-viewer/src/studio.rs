@@ -13,6 +13,7 @@ use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
+use crate::own_look::Textures;
 use crate::run::Run;
 use crate::stats::RenderStats;
 
@@ -56,14 +57,17 @@ impl Studio {
         let mut uploads = PassList::new();
         let opaque: Vec<Mesh> = mesh.into_iter().chain(run.groom.mesh.clone()).collect();
         let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
-        let mut sections = Vec::new();
+        let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
             let section = if velocity_output { section.with_past(backend)? } else { section };
+            let look = textures.look(strands)?;
+            own_colors |= look.colors().is_some();
+            let section = section.with_own_look(backend, &mut uploads, &look)?;
             sections.push((section, material(args, *run.params.material(index))));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
-        let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output);
+        let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output).own_colors(own_colors);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
@@ -170,7 +174,13 @@ fn material(args: &Render, material: Material) -> Material {
         Some(cli::Scattering::Fibre) => Some(material.fibre.unwrap_or_default()),
     };
     let [base_color, tip_color] = material.colors();
-    material.with(|m| (m.fibre, m.base_color, m.tip_color) = (fibre, base_color, tip_color))
+    // A colour that was asked for is seen, whatever the file has.
+    let is_asked_for = args.look.is_some() && args.root_texture.is_none() && args.strand_texture.is_none();
+    let own_colors = if is_asked_for { 0.0 } else { material.own_colors };
+    material.with(|m| {
+        (m.fibre, m.base_color, m.tip_color) = (fibre, base_color, tip_color);
+        m.own_colors = own_colors;
+    })
 }
 
 /// The sections with the detail that the view needs; all of it where no `lod` is given.

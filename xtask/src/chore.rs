@@ -9,7 +9,7 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 17] = [
+const PICTURES: [(&str, &str); 19] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
@@ -25,6 +25,14 @@ const PICTURES: [(&str, &str); 17] = [
     ("look-black.png", "builtin:long --frames 0 --size 320x400 --look black"),
     ("look-grey.png", "builtin:long --frames 0 --size 320x400 --look grey"),
     ("look-dyed.png", "builtin:long --frames 0 --size 320x400 --look dyed"),
+    (
+        "root-texture.png",
+        "builtin:fur --frames 0 --size 400x400 --scattering fibre --root-texture docs/textures/spots.png",
+    ),
+    (
+        "strand-texture.png",
+        "builtin:long --frames 0 --size 320x400 --scattering fibre --strand-texture docs/textures/dyed-tips.png",
+    ),
     // Whole periods of the motion, after the first.
     ("long-turn.gif", "builtin:long:2000 --follow 1 --motion turn --fps 20 --from 50 --frames 100 --size 256x256"),
     (

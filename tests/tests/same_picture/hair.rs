@@ -6,9 +6,9 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::render::{Groom, Random};
-use tressfx_core::strand_buffers::StrandShape;
-use tressfx_core::strands::{StrandOptions, Strands, relative_to};
-use tressfx_render::{Lod, Material, StrandInfo};
+use tressfx_core::asset::HairAsset;
+use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_render::{Lod, Material};
 
 /// What of each groom a scene takes is made once.
 #[derive(Default)]
@@ -61,25 +61,24 @@ fn grid() -> Vec<Vec<Vec3>> {
     across.chain(down).collect()
 }
 
-/// A built-in groom, `NAME:strands:vertices`, about the middle of it; with `+2` behind it two strands follow each guide.
+/// Colours, opacities and widths that differ from vertex to vertex.
+fn colour(asset: &mut HairAsset) {
+    let mut random = Random(4);
+    let mut some = || [(); 4].map(|()| random.unit());
+    asset.vertex_colors = Some(asset.points.iter().map(|_| some()).collect());
+    asset.vertex_thickness = Some(asset.points.iter().map(|_| 3.0 * some()[0]).collect());
+}
+
+/// A built-in groom, `NAME:strands:vertices`, about the middle of it; with ` coloured` behind it, it brings a look along; with `+2` behind that two strands follow
+/// each guide.
 fn grown(name: &str, material: Material) -> Groom {
     let (name, follows) = name.split_once('+').unwrap_or((name, "0"));
-    let asset = Builtin::parse(name).expect("a built-in groom").asset();
+    let (name, brings_along) = name.strip_suffix(" coloured").map_or((name, false), |name| (name, true));
+    let mut asset = Builtin::parse(name).expect("a built-in groom").asset();
+    if brings_along {
+        colour(&mut asset);
+    }
     let follows = Some(follows.parse().expect("a number"));
     let strands = Strands::new(&asset, &StrandOptions { follows, ..StrandOptions::default() }).expect("strands");
-    let center = strands.bounds.rounded_center();
-    let copies = 1 + strands.follows as usize;
-    let arrays = |values: Vec<glam::Vec4>| values.into_iter().map(|value| value.to_array()).collect();
-    let mut info = StrandInfo::new(&strands);
-    info.sample.iter_mut().flat_map(|(ends, _)| ends).for_each(|end| *end -= center);
-    Groom {
-        shape: StrandShape::of(&strands),
-        positions: arrays(strands.interleave(&relative_to(center, &strands.rest_of_all()))),
-        tangents: arrays(strands.interleave(&strands.tangents.repeat(copies))),
-        thickness: strands.interleave(&strands.thickness),
-        info,
-        material,
-        pose: tressfx_core::view::Pose::IDENTITY,
-        lod: Lod::FULL,
-    }
+    Groom::of(&strands, material)
 }

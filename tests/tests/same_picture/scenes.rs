@@ -171,6 +171,7 @@ const FUR: &[&str] = &["fur:600:5"];
 const LONG: &[&str] = &["long:250:16"];
 const STRAIGHT: &[&str] = &["straight:300:8"];
 const FOLLOWED: &[&str] = &["wavy:80:12+2"];
+const COLOURED: &[&str] = &["wavy:80:12 coloured+2"];
 const LOOSE: &[&str] = &["loose"];
 const THICK: &[&str] = &["dense"];
 const TWO: &[&str] = &["loose", "other"];
@@ -185,6 +186,8 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("long", LONG, (Eye::Middle, Look::Default, Solid::Nothing), [96, 160], USUAL),
     scene("straight", STRAIGHT, (Eye::Middle, Look::Default, Solid::Nothing), [160, 96], USUAL),
     scene("strands that follow guides", FOLLOWED, (Eye::Middle, Look::Default, Solid::Nothing), [160, 96], USUAL),
+    scene("a look of its own", COLOURED, (Eye::Middle, Look::Default, Solid::Nothing), [128, 96], USUAL),
+    scene("a look of its own, as glass", COLOURED, (Eye::Middle, Look::Glass, Solid::Nothing), [128, 96], USUAL),
     scene("loose", LOOSE, (Eye::Middle, Look::Wide, Solid::Nothing), [160, 96], USUAL),
     scene("dense", THICK, (Eye::Middle, Look::Blunt, Solid::Nothing), [128, 96], USUAL),
     scene("some of the strands and vertices", &["some", "other"], (Eye::Middle, Look::Varied, Solid::Nothing), [128, 96], USUAL),

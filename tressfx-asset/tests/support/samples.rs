@@ -46,7 +46,8 @@ pub(crate) fn tressfx4(strands: u32, vertices: u32) -> Vec<u8> {
         let w = if vertex % vertices < 2 { 0.0 } else { 1.0 };
         push_f32(&mut file, &[vertex as f32, 0.5, -0.25, w]);
     }
-    push_ramp(&mut file, 2 * strands + 2 * total + strands + 4 * total);
+    push_ramp(&mut file, 2 * strands + 2 * total + strands);
+    push_shares(&mut file, 4 * total);
     file
 }
 
@@ -63,7 +64,8 @@ fn tressfx3(strands: u32, vertices: u32) -> Vec<u8> {
     file.resize(144, 0);
     push_u32(&mut file, &[header, thickness, uv, color, guide_index, vertex_uv]);
     file.resize(header as usize, 0);
-    push_ramp(&mut file, 3 * total + strands + 2 * strands + 4 * total);
+    push_ramp(&mut file, 3 * total + strands + 2 * strands);
+    push_shares(&mut file, 4 * total);
     (0..strands).for_each(|strand| push_u32(&mut file, &[strand]));
     push_ramp(&mut file, 2 * total);
     file
@@ -80,8 +82,9 @@ fn hair(segments: &[u16], bits: u32) -> Vec<u8> {
         segments.iter().for_each(|s| file.extend(s.to_le_bytes()));
     }
     for (bit, width) in [(1, 3), (2, 1), (3, 1), (4, 3)] {
+        let push = if bit < 3 { push_ramp } else { push_shares };
         if bits & (1 << bit) != 0 {
-            push_ramp(&mut file, points * width);
+            push(&mut file, points * width);
         }
     }
     file
@@ -93,6 +96,11 @@ fn push_u32(file: &mut Vec<u8>, values: &[u32]) {
 
 fn push_f32(file: &mut Vec<u8>, values: &[f32]) {
     file.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+}
+
+/// Numbers from 0 to 1.
+fn push_shares(file: &mut Vec<u8>, count: u32) {
+    (0..count).for_each(|i| push_f32(file, &[(i % 9) as f32 * 0.125]));
 }
 
 fn push_ramp(file: &mut Vec<u8>, count: u32) {

@@ -2,6 +2,50 @@
 
 use super::{AssetError, AssetProblem, HairAsset};
 
+/// By how much rounding may take a share beyond 1.
+const ROUNDING: f32 = 1e-3;
+
+/// What the values of an array may be, beside finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Values {
+    /// Anything.
+    Any,
+    /// 0 or more.
+    NotNegative,
+    /// From 0 to 1, and a little above it, as rounding leaves it.
+    Share,
+}
+
+impl Values {
+    fn hold(self, value: f32) -> bool {
+        match self {
+            Self::Any => true,
+            Self::NotNegative => value >= 0.0,
+            Self::Share => (0.0..=1.0 + ROUNDING).contains(&value),
+        }
+    }
+
+    fn expected(self) -> &'static str {
+        match self {
+            Self::Any => "a finite number",
+            Self::NotNegative => "0 or more",
+            Self::Share => "from 0 to 1",
+        }
+    }
+
+    /// What is wrong with a value, if it is not finite or out of range.
+    pub fn problem(self, value: f32) -> Option<AssetProblem> {
+        let expected = if value.is_finite() { self.expected() } else { "a finite number" };
+        let fits = value.is_finite() && self.hold(value);
+        (!fits).then(|| AssetProblem::out_of_range(value, expected))
+    }
+
+    /// Looks for a value that is out of range: where it is, and what is wrong with it.
+    pub fn find_beyond(self, values: &[f32]) -> Option<(usize, AssetProblem)> {
+        values.iter().enumerate().find_map(|(index, &value)| Some((index, self.problem(value)?)))
+    }
+}
+
 /// What an array has an entry for; finds the strand and the vertex of an entry.
 #[derive(Clone, Copy, Debug)]
 pub enum Domain<'a> {
@@ -32,9 +76,12 @@ impl Domain<'_> {
     }
 }
 
+/// Name, values, values per entry, what an entry belongs to, and what it may be.
+type FloatArray<'a> = (&'static str, Option<&'a [f32]>, usize, Domain<'a>, Values);
+
 impl HairAsset {
     /// Checks that there is a strand, that no strand is empty, that every array has the length that its kind needs, and
-    /// that all values are finite and no inverse mass is negative.
+    /// that all values are finite, no inverse mass and no thickness is negative, and transparencies and colours are from 0 to 1.
     ///
     /// [`crate::strands::Strands::new`] checks too, because the fields are public.
     ///
@@ -42,18 +89,18 @@ impl HairAsset {
     /// The first array or value that does not fit.
     pub fn check(&self) -> Result<(), AssetError> {
         self.check_counts()?;
-        for (field, values, width, domain) in self.float_arrays() {
+        for (field, values, width, domain, range) in self.float_arrays() {
             let Some(values) = values else { continue };
             self.check_length(field, domain, values.len() / width)?;
-            if let Some((_, kind)) = domain.find_not_finite(values, width) {
+            let beyond = domain.find_not_finite(values, width).or_else(|| range.find_beyond(values));
+            if let Some((_, kind)) = beyond {
                 return Err(self.error(field, kind));
             }
         }
         if let Some(index) = &self.guide_index {
             self.check_length("guide index", Domain::Strand, index.len())?;
         }
-        let negative = self.inverse_mass.iter().flatten().find(|&&value| value < 0.0);
-        negative.map_or(Ok(()), |value| Err(self.error("inverse mass", AssetProblem::out_of_range(value, "0 or more"))))
+        Ok(())
     }
 
     fn check_counts(&self) -> Result<(), AssetError> {
@@ -73,19 +120,20 @@ impl HairAsset {
         Err(self.error("vertices of all strands", AssetProblem::Mismatch { stated, found, of: "points are there" }))
     }
 
-    /// All arrays of floats: name, values, values per entry, and what an entry belongs to.
-    fn float_arrays(&self) -> [(&'static str, Option<&[f32]>, usize, Domain<'_>); 9] {
+    /// All arrays of floats.
+    fn float_arrays(&self) -> [FloatArray<'_>; 9] {
+        use Values::{Any, NotNegative, Share};
         let vertex = Domain::Vertex(&self.counts);
         [
-            ("points", Some(self.points.as_flattened()), 3, vertex),
-            ("inverse mass", self.inverse_mass.as_deref(), 1, vertex),
-            ("strand UVs", flat(&self.strand_uvs), 2, Domain::Strand),
-            ("strand w", self.strand_w.as_deref(), 1, Domain::Strand),
-            ("strand thickness", self.strand_thickness.as_deref(), 1, Domain::Strand),
-            ("vertex UVs", flat(&self.vertex_uvs), 2, vertex),
-            ("vertex thickness", self.vertex_thickness.as_deref(), 1, vertex),
-            ("vertex transparency", self.vertex_transparency.as_deref(), 1, vertex),
-            ("vertex colours", flat(&self.vertex_colors), 4, vertex),
+            ("points", Some(self.points.as_flattened()), 3, vertex, Any),
+            ("inverse mass", self.inverse_mass.as_deref(), 1, vertex, NotNegative),
+            ("strand UVs", flat(&self.strand_uvs), 2, Domain::Strand, Any),
+            ("strand w", self.strand_w.as_deref(), 1, Domain::Strand, Any),
+            ("strand thickness", self.strand_thickness.as_deref(), 1, Domain::Strand, NotNegative),
+            ("vertex UVs", flat(&self.vertex_uvs), 2, vertex, Any),
+            ("vertex thickness", self.vertex_thickness.as_deref(), 1, vertex, NotNegative),
+            ("vertex transparency", self.vertex_transparency.as_deref(), 1, vertex, Share),
+            ("vertex colours", flat(&self.vertex_colors), 4, vertex, Share),
         ]
     }
 
@@ -145,5 +193,14 @@ mod tests {
         );
         let broken = HairAsset { inverse_mass: Some(vec![0.0, 1.0, 1.0, 1.0, -1.0]), ..asset() };
         assert!(broken.check().expect_err("negative").to_string().contains("is -1, but must be 0 or more"));
+        let broken = HairAsset { vertex_colors: Some(vec![[0.0, 0.5, 255.0, 1.0]; 5]), ..asset() };
+        assert_eq!(
+            broken.check().expect_err("8 bits").to_string(),
+            "f: vertex colours: is 255, but must be from 0 to 1"
+        );
+        let broken = HairAsset { strand_thickness: Some(vec![0.5, -0.5]), ..asset() };
+        assert!(broken.check().expect_err("negative").to_string().contains("strand thickness: is -0.5"));
+        let rounded = HairAsset { vertex_transparency: Some(vec![1.0 + 1e-6; 5]), ..asset() };
+        rounded.check().expect("rounding");
     }
 }

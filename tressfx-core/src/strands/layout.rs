@@ -30,7 +30,7 @@ impl Strands {
     }
 
     /// Turns a pose into an asset, in the order of the file that the strands came from: each guide, and behind it its
-    /// follow strands where `all` is set. Inverse masses and strand UVs come along; the unit stays the file's.
+    /// follow strands where `all` is set. Inverse masses, strand UVs, colours and thickness come along; the unit stays the file's.
     ///
     /// `positions` are strand-major, of the guides or of all strands; `w` is not looked at.
     ///
@@ -47,14 +47,22 @@ impl Strands {
         let copies = if all { 1 + self.follows as usize } else { 1 };
         let (mut points, mut masses) = (Vec::new(), Vec::new());
         let mut uvs = self.strand_uv.as_ref().map(|_| Vec::new());
+        let mut colors = self.vertex_colors.as_ref().map(|_| Vec::new());
+        let mut widths = self.vertex_widths.as_ref().map(|_| Vec::new());
         for guide in self.guides_in_file_order() {
-            let rest = &self.rest[guide * vertices..(guide + 1) * vertices];
+            let own = guide * vertices..(guide + 1) * vertices;
             for copy in 0..copies {
                 let start = (guides * copy + guide) * vertices;
                 points.extend(positions[start..start + vertices].iter().map(|p| p.truncate().to_array()));
-                masses.extend(rest.iter().map(|vertex| vertex.w));
+                masses.extend(self.rest[own.clone()].iter().map(|vertex| vertex.w));
                 if let (Some(out), Some(uv)) = (&mut uvs, &self.strand_uv) {
                     out.push(uv[guide].to_array());
+                }
+                if let (Some(out), Some(of)) = (&mut colors, &self.vertex_colors) {
+                    out.extend(of[own.clone()].iter().map(Vec4::to_array));
+                }
+                if let (Some(out), Some(of)) = (&mut widths, &self.vertex_widths) {
+                    out.extend_from_slice(&of[own.clone()]);
                 }
             }
         }
@@ -62,6 +70,8 @@ impl Strands {
         Ok(HairAsset {
             inverse_mass: Some(masses),
             strand_uvs: uvs,
+            vertex_colors: colors,
+            vertex_thickness: widths,
             ..HairAsset::new(self.name.clone(), AssetFormat::TressFx4, points, counts)
         })
     }

@@ -41,8 +41,15 @@ struct SectionUniform {
     multiple: f32,
     // Strands that are counted for shadows at most.
     shadow_strands: u32,
+    // In w what it is as a multiple of the square of the logarithm of a colour.
     absorption: vec4<f32>,
     tip_absorption: vec4<f32>,
+    // Share of a strand, from the root, that has the colour of the root, and 1 / (1 - tip_start).
+    tip_start: f32,
+    tip_scale: f32,
+    hue_variation: f32,
+    // How much of the colours that strands bring along is seen.
+    own_colors: f32,
 }
 
 // The vertex of the whole strand, which has so many, that a drawn one is.

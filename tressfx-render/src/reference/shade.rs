@@ -15,16 +15,26 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
     let guide = strand % of.guides;
     let index = (vertex * of.strands + strand) as usize;
     let along = f64::from(vertex) / f64::from(of.vertices - 1);
+    let tip_share = ((along - f64::from(of.tip_start)) * f64::from(of.tip_scale)).clamp(0.0, 1.0);
+    let own = strands.own_colors.map(|own| own[(vertex * of.guides + guide) as usize]);
+    let own = own.map_or(DVec4::ONE, |own| DVec4::from_array(own.map(f64::from)));
+    let own_share = f64::from(of.own_colors);
     let [base, tip] = [of.base, of.tip].map(|paint| DVec4::from_array(paint.map(f64::from)));
-    let paint = base.lerp(tip, along);
+    let color = base.lerp(tip, tip_share).truncate().lerp(own.truncate(), own_share);
+    let opacity = base.lerp(tip, along).w * own.w;
     let tangent = matrix(&of.pose).transform_vector3(xyz(&strands.tangents[index]));
     let tilt = f64::from(of.tilt) * (1.0 + f64::from(of.tilt_variation) * strand_random(strand, guide, 1));
     let differs = f64::from(of.variation) * strand_random(strand, guide, 0);
+    let hue = f64::from(of.hue_variation) * strand_random(strand, guide, 2);
+    let absorption = xyz(&of.absorption).lerp(xyz(&of.tip_absorption), tip_share);
+    let own_absorption = f64::from(of.absorption[3]) * own.truncate().map(|part| part.max(1e-30).ln().powi(2));
     let fibre = match strands.fibre {
         Some(table) => Fibre::Glass(scatter::Fibre {
             tangent,
             tilt,
-            absorption: xyz(&of.absorption).lerp(xyz(&of.tip_absorption), along) * (1.0 - differs),
+            absorption: absorption.lerp(own_absorption, own_share)
+                * (1.0 - differs)
+                * DVec3::new(1.0 - hue, 1.0, 1.0 + hue),
             variances: [1.0, 0.25, 4.0, 4.0].map(|factor| factor * f64::from(of.variance)),
             multiple: f64::from(of.multiple),
             table,
@@ -32,7 +42,7 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
         None => Fibre::Kajiya(Kajiya {
             tangent,
             tilt,
-            albedo: paint.truncate() * (1.0 + differs),
+            albedo: color * (1.0 + differs) * DVec3::new(1.0 + hue, 1.0, 1.0 - hue),
             diffuse: f64::from(of.diffuse),
             primary: pair(of.primary),
             secondary: pair(of.secondary),
@@ -43,7 +53,7 @@ pub fn shade(view: &View, lights: &Lights, strands: &Strands, strand: u32, verte
     let arriving = strands.arriving.map_or(Arriving::ALL, |arriving| arriving[index]);
     let eye = Projection::new(view).towards_eye(point);
     let color = skin * lit(lights, [of.self_shadow, of.shadow_alpha].map(f64::from), point, eye, &fibre, &arriving);
-    color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(paint.w)
+    color.clamp(DVec3::ZERO, DVec3::splat(60_000.0)).extend(opacity)
 }
 
 /// How a fibre scatters light.

@@ -25,17 +25,17 @@ fn tiles(backend: &mut NullBackend) -> Tiles {
 #[test]
 fn structs_are_laid_out_as_in_the_wgsl() {
     let mut backend = NullBackend::default();
-    let shade = Shade::new(&mut backend, true).unwrap();
+    let shade = Shade::new(&mut backend, true, true).unwrap();
     let ppll = Ppll::new(&mut backend, &PpllDesc::default(), [64, 64], Format::Rgba16F).unwrap();
     let shortcut = shortcut(&mut backend, 3, false);
     let [fill, resolve, composite] = ppll.shaders();
     let [depths, colors, shortcut_resolve, _] = shortcut.shaders();
-    for shader in [&*shade.kajiya.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
+    for shader in [&*shade.plain.kajiya.open.shader, fill, resolve, composite, depths, colors, shortcut_resolve] {
         shader.check_layout::<ViewUniform>().unwrap();
         shader.check_layout::<LensUniform>().unwrap();
         shader.check_layout::<LightUniform>().unwrap();
     }
-    for shader in [&*shade.kajiya.open.shader, &shade.fibre.open.shader, fill, depths, colors] {
+    for shader in [&*shade.plain.kajiya.open.shader, &shade.plain.fibre.open.shader, fill, depths, colors] {
         shader.check_layout::<SectionUniform>().unwrap();
     }
     for shader in [fill, resolve, depths, shortcut_resolve] {
@@ -73,9 +73,9 @@ fn structs_are_laid_out_as_in_the_wgsl() {
 #[test]
 fn every_kernel_fits_the_limits_of_webgpu() {
     let mut backend = NullBackend::default();
-    let shade = Shade::new(&mut backend, true).unwrap();
-    assert!(shade.kajiya.shadowed.unwrap().shader.storage_buffers() == 4);
-    let shade = shade.fibre.shadowed.unwrap();
+    let shade = Shade::new(&mut backend, true, true).unwrap();
+    assert!(shade.plain.kajiya.shadowed.unwrap().shader.storage_buffers() == 4);
+    let shade = shade.plain.fibre.shadowed.unwrap();
     for k in K_RANGE {
         let desc = PpllDesc { k, ..PpllDesc::default() };
         let ppll = Ppll::new(&mut backend, &desc, [64, 64], Format::Rgba8Srgb).unwrap();

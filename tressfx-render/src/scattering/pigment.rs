@@ -26,6 +26,11 @@ pub(crate) fn absorption_of_color(color: Vec3, azimuthal_roughness: f32) -> Vec3
     Vec3::from_array(root.map(|root| (root * root).min(f64::from(MAX_ABSORPTION)) as f32))
 }
 
+/// The absorption with which a dense volume of fibres has a colour, divided by the square of the logarithm of the colour.
+pub(crate) fn pigmentation(azimuthal_roughness: f32) -> f32 {
+    spread(azimuthal_roughness).powi(-2) as f32
+}
+
 /// The colour of a dense volume of fibres of an absorption.
 pub(crate) fn color_of_absorption(absorption: Vec3, azimuthal_roughness: f32) -> Vec3 {
     let root = DVec3::from_array(absorption.as_dvec3().to_array().map(f64::sqrt));
@@ -44,6 +49,8 @@ mod tests {
                 assert!((again - color).abs().max_element() < 1e-6, "{color} {again}");
             }
         }
+        let (color, half) = (Vec3::splat(0.5), 0.5f32.ln());
+        assert!((absorption_of_color(color, 0.3).x / (pigmentation(0.3) * half * half) - 1.0).abs() < 1e-6);
         assert_eq!(absorption_of_color(Vec3::ZERO, 0.3), Vec3::splat(MAX_ABSORPTION));
         assert_eq!(absorption_of_color(Vec3::ONE, 0.3), Vec3::ZERO);
         assert_eq!(absorption_of_melanin(1.0, 2.0), EUMELANIN + 2.0 * PHEOMELANIN);

@@ -83,7 +83,7 @@ impl ShadowUniform {
             first: 0,
             end: 1,
             samples: desc.samples,
-            radius: draws.iter().map(|draw| draw.strands.info.radius(draw.material)).fold(0.0, f32::max),
+            radius: draws.iter().map(|draw| draw.strands.radius(draw.material)).fold(0.0, f32::max),
         };
         if draws.is_empty() {
             return Self { first: 1, ..uniform };

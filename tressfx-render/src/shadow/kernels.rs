@@ -129,7 +129,7 @@ impl Kernels {
             ("bounds", memory.bounds.into()),
             ("section", strands.uniform.into()),
             ("positions", strands.buffers.positions.into()),
-            ("thickness", strands.buffers.thickness.into()),
+            ("thickness", strands.thickness().into()),
             ("cells", memory.cells.into()),
         ];
         let segments = samples(draw, desc) * (draw.lod_uniform().vertices - 1);

@@ -152,7 +152,7 @@ impl Kernels {
             ("section", strands.uniform.into()),
             ("positions", strands.buffers.positions.into()),
             ("colors", strands.colors.into()),
-            ("thickness", strands.buffers.thickness.into()),
+            ("thickness", strands.thickness().into()),
             ("points", memory.vertices.points.range(16 * first_vertex, 16 * vertices)),
             ("paints", memory.vertices.paints.range(16 * first_vertex, 16 * vertices)),
             ("infos", memory.screen.infos.into()),
