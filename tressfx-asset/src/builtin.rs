@@ -1,8 +1,9 @@
 //! Built-in grooms: made from a seed, in metres, y up, the face towards +z.
 //!
-//! They need no files and no licence: the demo, the tests and the documentation's pictures use them. All but the fur grow
+//! They need no files and no licence: the demo, the tests and the documentation's pictures use them. All but the fur and the animal grow
 //! on the head of a bust, which [`Builtin::mesh`] and [`Builtin::capsules`] give in the same space.
 
+mod animal;
 mod body;
 mod clumps;
 mod growth;
@@ -37,11 +38,16 @@ pub enum Style {
     Long,
     /// Short fur on a sphere.
     Fur,
+    /// An animal with fur that flows from nose to tail: short on face and feet, long on chest and tail.
+    Animal,
+    /// A beard with moustache and brows.
+    Beard,
 }
 
 impl Style {
     /// Every style.
-    pub const ALL: [Self; 5] = [Self::Straight, Self::Wavy, Self::Curly, Self::Long, Self::Fur];
+    pub const ALL: [Self; 7] =
+        [Self::Straight, Self::Wavy, Self::Curly, Self::Long, Self::Fur, Self::Animal, Self::Beard];
 
     /// The name by which [`Builtin`] parses it.
     pub fn name(self) -> &'static str {
@@ -51,6 +57,8 @@ impl Style {
             Self::Curly => "curly",
             Self::Long => "long",
             Self::Fur => "fur",
+            Self::Animal => "animal",
+            Self::Beard => "beard",
         }
     }
 
@@ -62,6 +70,8 @@ impl Style {
             Self::Curly => (10_000, 64),
             Self::Long => (16_384, 32),
             Self::Fur => (40_000, 8),
+            Self::Animal => (60_000, 6),
+            Self::Beard => (9_000, 12),
         }
     }
 }
@@ -83,7 +93,7 @@ pub struct Builtin {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BuiltinError {
     /// There is no such style.
-    #[error("no built-in groom {0:?}: there are straight, wavy, curly, long and fur")]
+    #[error("no built-in groom {0:?}: there are straight, wavy, curly, long, fur, animal and beard")]
     Name(String),
     /// A count is no number, or out of range.
     #[error("built-in groom {groom:?}: {field} {value:?} must be a number from {min} to {max}")]
@@ -149,7 +159,7 @@ impl Builtin {
         text.parse()
     }
 
-    /// Grows the groom. Every vertex is outside of the head and of the bust. A pure function of the fields.
+    /// Grows the groom. Every vertex is outside of the body. A pure function of the fields.
     pub fn asset(&self) -> HairAsset {
         let (vertices, body) = (self.vertices.clamp(MIN_VERTICES, MAX_VERTICES), self.body());
         let look = Look::of(self.style);
@@ -165,28 +175,30 @@ impl Builtin {
         }
     }
 
-    /// What the roots are on: the skull, or the sphere of the fur.
+    /// What the roots are on: the skull, or the sphere of the fur. None for the animal, whose roots are on the parts of [`Builtin::mesh`].
     pub fn head(&self) -> Option<Ellipsoid> {
-        Some(self.body().head)
+        self.body().head
     }
 
     /// What the strands collide with: the head, filled with capsules that leave the roots outside, the neck and the
-    /// shoulders.
+    /// shoulders; or the parts of the animal, a little below their skin.
     pub fn capsules(&self) -> Vec<Capsule> {
         self.body().capsules()
     }
 
-    /// The head, neck and shoulders to be drawn under the hair.
+    /// The head, neck and shoulders, or the animal, to be drawn under the hair.
     pub fn mesh(&self) -> Mesh {
         let body = self.body();
-        let mut mesh = Mesh::ellipsoid(&body.head, 48);
-        body.bust.iter().for_each(|capsule| mesh.append(&Mesh::capsule(capsule, 48)));
+        let mut mesh = Mesh::default();
+        body.head.iter().for_each(|head| mesh.append(&Mesh::ellipsoid(head, 48)));
+        body.solids().for_each(|capsule| mesh.append(&Mesh::capsule(capsule, 48)));
         mesh
     }
 
     fn body(&self) -> Body {
         match self.style {
             Style::Fur => Body::sphere(Vec3::ZERO, 0.1),
+            Style::Animal => Body::animal(),
             _ => Body::bust(),
         }
     }

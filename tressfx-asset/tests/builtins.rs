@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use glam::Vec3;
 use tressfx_asset::Report;
 use tressfx_asset::builtin::{Builtin, BuiltinError, Style};
 use tressfx_core::strands::{StrandOptions, Strands};
@@ -14,14 +15,19 @@ fn small(style: Style) -> Builtin {
 fn every_style_is_sound_and_starts_on_the_head() {
     for style in Style::ALL {
         let builtin = small(style);
-        let (asset, head) = (builtin.asset(), builtin.head().expect("every style has one"));
+        let asset = builtin.asset();
         let report = Report::new(&asset).expect("sound");
         assert_eq!((report.strands, report.max_vertices), (500, builtin.vertices));
         assert_eq!(report.metres_per_unit, 1.0);
         assert!(report.oddities.is_empty(), "{style:?}: {:?}", report.oddities);
         for range in asset.ranges() {
-            let root = head.level(asset.points[range.start].into());
-            assert!((root - 1.0).abs() < 1e-5, "{style:?}: a root at level {root}");
+            let root = asset.points[range.start].into();
+            let off = match builtin.head() {
+                Some(head) => head.level(root) - 1.0,
+                // Colliders are 2 mm below the skin.
+                None => builtin.capsules().iter().map(|part| part.distance(root)).fold(f32::INFINITY, f32::min) - 2e-3,
+            };
+            assert!(off.abs() < 1e-5, "{style:?}: a root that is {off} off");
         }
         Strands::new(&asset, &StrandOptions::default()).expect("sound");
     }
@@ -32,13 +38,50 @@ fn no_vertex_is_inside_of_head_or_bust() {
     for style in Style::ALL {
         for vertices in [2, 5, 32] {
             let builtin = Builtin { vertices, ..small(style) };
-            let (asset, head, capsules) = (builtin.asset(), builtin.head().expect("a head"), builtin.capsules());
+            let (asset, head, capsules) = (builtin.asset(), builtin.head(), builtin.capsules());
             for &point in &asset.points {
-                assert!(head.level(point.into()) > 1.0 - 1e-5, "{style:?}: {point:?} is inside of the head");
+                let level = head.map_or(1.0, |head| head.level(point.into()));
+                assert!(level > 1.0 - 1e-5, "{style:?}: {point:?} is inside of the head");
                 assert!(capsules.iter().all(|c| c.distance(point.into()) > -1e-5), "{style:?}: {point:?}");
             }
         }
     }
+}
+
+#[test]
+fn the_fur_of_the_animal_flows_from_nose_to_tail_and_is_short_on_face_and_feet() {
+    let asset = Builtin { strands: 6000, ..Builtin::from(Style::Animal) }.asset();
+    let points = |range: std::ops::Range<usize>| asset.points[range].iter().map(|&point| Vec3::from(point)).collect();
+    let strands: Vec<Vec<Vec3>> = asset.ranges().map(points).collect();
+    let length = |strand: &Vec<Vec3>| strand.windows(2).map(|edge| edge[0].distance(edge[1])).sum::<f32>();
+    let mean = |chosen: &dyn Fn(Vec3) -> bool, of: &dyn Fn(&Vec<Vec3>) -> f32| {
+        let chosen: Vec<f32> = strands.iter().filter(|strand| chosen(strand[0])).map(of).collect();
+        assert!(chosen.len() > 50, "{} strands", chosen.len());
+        chosen.iter().sum::<f32>() / chosen.len() as f32
+    };
+    let (trunk, feet) = (|p: Vec3| p.y > 0.25 && p.z.abs() < 0.15, |p: Vec3| p.y < 0.03);
+    let (face, tail) = (|p: Vec3| p.z > 0.33, |p: Vec3| p.z < -0.36);
+    let backwards = |strand: &Vec<Vec3>| (strand[0] - strand[strand.len() - 1]).z / length(strand);
+    assert!(mean(&trunk, &backwards) > 0.5, "{}", mean(&trunk, &backwards));
+    let [trunk, feet, face, tail] =
+        [mean(&trunk, &length), mean(&feet, &length), mean(&face, &length), mean(&tail, &length)];
+    assert!(
+        trunk > 0.02 && tail > 1.3 * trunk && feet < 0.5 * trunk && face < 0.65 * trunk,
+        "{trunk} {tail} {feet} {face}"
+    );
+    // As many on the left as on the right.
+    let left = strands.iter().filter(|strand| strand[0].x < 0.0).count();
+    assert!(left.abs_diff(3000) < 150, "{left} of 6000 on the left");
+}
+
+#[test]
+fn a_beard_leaves_mouth_eyes_and_forehead_free() {
+    let asset = Builtin::from(Style::Beard).asset();
+    let free = |p: &Vec3| p.z > 0.05 && (p.y > 0.04 || (-0.03..0.015).contains(&p.y) && p.x.abs() < 0.05);
+    let roots: Vec<Vec3> = asset.ranges().map(|range| asset.points[range.start].into()).collect();
+    assert_eq!(roots.iter().filter(|root| free(root)).count(), 0);
+    let brows = roots.iter().filter(|root| root.y > 0.0).count();
+    assert!(brows > 100 && brows < roots.len() / 4, "{brows} hairs of brows");
 }
 
 #[test]

@@ -12,8 +12,6 @@ use super::growth;
 use super::roots::Root;
 use super::style::{Look, Wave};
 
-/// More clumps than this would cost time and not be told apart.
-const MOST_CLUMPS: usize = 600;
 /// One strand in so many keeps to itself.
 const FLYAWAY: f32 = 0.03;
 /// Shares of the pull to its clump that are tried on a strand.
@@ -36,7 +34,7 @@ struct Clump {
 
 /// Grows all strands: the points of all, concatenated. None is inside the body.
 pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, seed: u64) -> Vec<[f32; 3]> {
-    let count = (roots.len() / look.clump_size).clamp(1, MOST_CLUMPS);
+    let count = (roots.len() / look.clump_size).clamp(1, look.most_clumps);
     let clump = |(index, root): (usize, &Root)| {
         let mut random = Pcg32::new(seed, CLUMP_STREAMS + index as u64);
         let points = growth::grow(look, body, root, vertices, &mut random);

@@ -42,7 +42,7 @@ pub(super) fn grow(look: &Look, body: &Body, root: &Root, vertices: usize, rando
 /// Long enough to reach the hem on the way around the head.
 fn length(look: &Look, root: &Root) -> f32 {
     let around = 0.06 * (0.5 + 0.5 * root.direction.y);
-    look.hem.map_or(look.length, |hem| (root.position.y - hem + around).max(look.length))
+    root.length * look.hem.map_or(look.length, |hem| (root.position.y - hem + around).max(look.length))
 }
 
 /// Away from the parting and to the back, along the surface; then raised by the style's lift.
@@ -54,8 +54,9 @@ fn first_direction(look: &Look, root: &Root, random: &mut impl Rng) -> Vec3 {
             let front = (0.5 + 2.0 * root.direction.z).clamp(0.0, 1.0);
             Vec3::new(side * front, -0.6 * (1.0 - front), -0.75)
         }
-        Region::Everywhere => Vec3::new(0.35, -1.0, 0.2),
+        Region::Everywhere | Region::Face => Vec3::new(0.35, -1.0, 0.2),
     };
+    let comb = root.flow.unwrap_or(comb);
     let along = (comb - root.normal * comb.dot(root.normal)).normalize_or_zero();
     let direction = along * (1.0 - look.lift) + root.normal * look.lift + look.direction_spread * in_cube(random);
     direction.normalize_or(root.normal)

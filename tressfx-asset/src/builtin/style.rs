@@ -9,6 +9,8 @@ pub(super) enum Region {
     Scalp,
     /// Everywhere.
     Everywhere,
+    /// Beard, moustache and brows.
+    Face,
 }
 
 /// How a style grows, falls and clumps.
@@ -32,6 +34,8 @@ pub(super) struct Look {
     pub(super) volume: f32,
     /// Roots that share a clump.
     pub(super) clump_size: usize,
+    /// More clumps than this would cost time and not be told apart.
+    pub(super) most_clumps: usize,
     /// How far a strand is drawn to its clump at the tip, 0 to 1.
     pub(super) clumping: f32,
     /// Share of the strand, from the root, over which it is drawn there.
@@ -70,6 +74,29 @@ impl Look {
             Style::Curly => Self::curly(),
             Style::Long => Self::long(),
             Style::Fur => Self::fur(),
+            Style::Animal => Self {
+                lift: 0.14,
+                gravity: 4.0,
+                length: 0.03,
+                length_spread: 0.3,
+                direction_spread: 0.2,
+                clump_size: 20,
+                most_clumps: 4000,
+                clumping: 0.4,
+                ..Self::fur()
+            },
+            Style::Beard => Self {
+                region: Region::Face,
+                lift: 0.4,
+                gravity: 10.0,
+                length: 0.026,
+                direction_spread: 0.3,
+                clump_size: 12,
+                most_clumps: 1000,
+                clumping: 0.5,
+                wave: Wave { radius: 0.0012, pitch: 0.014, roundness: 0.5, onset: 0.01, looseness: 0.9 },
+                ..Self::fur()
+            },
         }
     }
 
@@ -85,6 +112,7 @@ impl Look {
             direction_spread: 0.12,
             volume: 0.026,
             clump_size: 48,
+            most_clumps: 600,
             clumping: 0.8,
             clump_onset: 1.0,
             clump_width: 0.45,
@@ -104,6 +132,7 @@ impl Look {
             direction_spread: 0.3,
             volume: 0.03,
             clump_size: 40,
+            most_clumps: 600,
             clumping: 0.9,
             clump_onset: 0.45,
             clump_width: 0.4,
@@ -123,6 +152,7 @@ impl Look {
             direction_spread: 0.25,
             volume: 0.0,
             clump_size: 24,
+            most_clumps: 600,
             clumping: 0.7,
             clump_onset: 1.0,
             clump_width: 0.25,
