@@ -272,6 +272,23 @@ fn hair_behind_a_ball_is_dark() {
     }
 }
 
+#[test]
+fn light_stops_behind_roots_only_where_hair_grows_on_skin() {
+    let mut darkest = [true, false].into_iter().filter_map(|skin| {
+        let desc = DESC().skin(skin);
+        let mut screen = shadowed(desc)?;
+        screen.lights.lights = vec![Light::directional(-Vec3::Y, Vec3::ONE)];
+        // Fibres that take nothing: what is dark is dark for the skin.
+        let groom = Groom::wavy(400, 8, 2, Material::default().with(|m| m.shadow_alpha = 0.0));
+        let (found, expected) = arriving(&mut screen, &desc, &groom);
+        let least = |all: &[Arriving]| all.iter().map(|one| one.lights[0].min(one.sky.w)).fold(1.0, f64::min);
+        assert!((least(&found) - least(&expected)).abs() < 0.02, "{}: {}", least(&found), least(&expected));
+        Some(least(&found))
+    });
+    let (Some(on_skin), Some(in_air)) = (darkest.next(), darkest.next()) else { return };
+    assert!(on_skin < 0.7 && in_air == 1.0, "{on_skin} {in_air}");
+}
+
 /// Hair that moves as a whole has the same shadow: what differs is only how it falls into the cells. The light does not come through the
 /// skin: that is in a cell or not.
 #[test]

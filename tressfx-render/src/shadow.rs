@@ -3,7 +3,7 @@
 //! Each light that casts has a box of cells around the hair, as the light sees it. What fibres take in each cell is counted, and summed up
 //! along the way of the light: opacity shadow maps (Kim and Neumann 2001). The sky has a box in the axes of the world, through which light is followed from
 //! 26 directions. A light that has no box, because there are more than [`ShadowDesc::lights`] or because it stands among the hair, is taken
-//! from what arrives from everywhere, in its direction. Skin is where roots are: light does not pass behind them.
+//! from what arrives from everywhere, in its direction. Skin is where roots are, if hair grows on any: light does not pass behind them.
 //!
 //! A fibre takes the share [`Material::shadow_alpha`](crate::Material::shadow_alpha) of the light that meets it.
 
@@ -44,12 +44,15 @@ pub struct ShadowDesc {
     pub lights: u32,
     /// Strands of a section that are counted at most; of more an even sample stands for all. At least 1.
     pub samples: u32,
+    /// Whether hair grows on skin that light does not pass. Where the opaque scene is not known, as in the light of the sky, skin is then taken
+    /// to be behind the roots of strands.
+    pub skin: bool,
 }
 
 impl Default for ShadowDesc {
-    /// Three lights with 192 x 192 x 48 cells, 21 MB, and 32 cells along the longest side of the groom.
+    /// Three lights with 192 x 192 x 48 cells, 21 MB, 32 cells along the longest side of the groom, and skin behind roots.
     fn default() -> Self {
-        Self { texels: 192, layers: 48, cells: 32, lights: 3, samples: 32_768 }
+        Self { texels: 192, layers: 48, cells: 32, lights: 3, samples: 32_768, skin: true }
     }
 }
 
@@ -76,6 +79,12 @@ impl ShadowDesc {
     #[must_use]
     pub fn samples(self, samples: u32) -> Self {
         Self { samples, ..self }
+    }
+
+    /// The same with skin behind the roots of strands, or with nothing that hair grows on.
+    #[must_use]
+    pub fn skin(self, skin: bool) -> Self {
+        Self { skin, ..self }
     }
 
     fn check(&self) -> Result<()> {

@@ -67,7 +67,9 @@ impl Studio {
             sections.push((section, material(args, *run.params.material(index))));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
-        let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output).own_colors(own_colors);
+        // Where nothing opaque is drawn, nothing that is not seen keeps light away.
+        let shadows = args.shadows.desc().map(|shadows| shadows.skin(!opaque.is_empty()));
+        let desc = desc.shadows(shadows).velocity_output(velocity_output).own_colors(own_colors);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
@@ -86,11 +88,11 @@ impl Studio {
 
     /// Records the shadows and what is opaque. Gives the lights with what they see of it.
     pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
-        let lights = self.light_depth.draw(list, &self.lights, &self.meshes, head)?;
-        let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
-        self.renderer.cast(list, &lights, &sections)?;
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
+        let lights = self.light_depth.draw(list, &self.lights, &meshes, head)?;
+        let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
+        self.renderer.cast(list, &lights, &sections)?;
         let shadows = self.renderer.shadow_bindings();
         let Self { view, targets, scene, .. } = self;
         let opaque = Scene { backdrop: Backdrop::default(), meshes: &meshes, shadows: &shadows };

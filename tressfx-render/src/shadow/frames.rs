@@ -36,7 +36,7 @@ gpu_struct! {
         pub kind: u32,
         /// Nearer to a point light than this nothing is told apart.
         pub nearest: f32,
-        /// 1 where skin is behind roots, 0 where the opaque scene is known.
+        /// 1 where skin is behind roots, 0 where there is none, or the opaque scene is known.
         pub has_skin: u32,
         /// Nothing.
         pub unused: u32,
@@ -95,7 +95,7 @@ impl ShadowUniform {
                 None => BY_SKY,
                 Some((axes, kind, nearest)) => {
                     let seen = frame(desc, uniform.end, axes, kind, nearest);
-                    let has_skin = u32::from(light.opaque.is_none());
+                    let has_skin = u32::from(desc.skin && light.opaque.is_none());
                     uniform.frames[uniform.end as usize] = ShadowFrameUniform { has_skin, ..seen };
                     uniform.end += 1;
                     uniform.end - 1
@@ -117,7 +117,15 @@ fn frame(desc: &ShadowDesc, index: u32, axes: Mat4, kind: u32, nearest: f32) -> 
             ([desc.texels, desc.texels, desc.layers], first as u32)
         }
     };
-    ShadowFrameUniform { axes: axes.to_cols_array_2d(), size, first, kind, nearest, has_skin: 1, unused: 0 }
+    ShadowFrameUniform {
+        axes: axes.to_cols_array_2d(),
+        size,
+        first,
+        kind,
+        nearest,
+        has_skin: u32::from(desc.skin),
+        unused: 0,
+    }
 }
 
 /// The middle of all hair in its rest pose, and the distance of what is farthest from it.
