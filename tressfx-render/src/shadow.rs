@@ -18,7 +18,7 @@ use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
-use crate::lights::{Lights, MAX_LIGHTS};
+use crate::lights::{Lights, STORED_LIGHTS};
 use crate::shaders::GROUP;
 use crate::strands::SectionDraw;
 use crate::views::MAX_VIEWS;
@@ -92,7 +92,7 @@ impl ShadowDesc {
             ("texels", self.texels, 8..=1024),
             ("layers", self.layers, 8..=1024),
             ("cells", self.cells, 8..=256),
-            ("lights", self.lights, 0..=MAX_LIGHTS as u32),
+            ("lights", self.lights, 0..=STORED_LIGHTS as u32),
             ("samples", self.samples, 1..=1 << 20),
         ];
         if u32::try_from(cells_of_all(self)).is_err() {
@@ -127,7 +127,7 @@ pub(crate) struct Memory {
 const SETS: usize = 1 + MAX_VIEWS;
 
 /// Bytes of the boxes of all frames.
-const BOUNDS_BYTES: u64 = 24 * (1 + MAX_LIGHTS as u64);
+const BOUNDS_BYTES: u64 = 24 * (1 + STORED_LIGHTS as u64);
 
 impl Memory {
     fn new(backend: &mut dyn Backend, desc: &ShadowDesc) -> Result<Self> {
@@ -139,7 +139,7 @@ impl Memory {
             cells: storage("hair.render.shadow_cells", 4 * cell_count)?,
             sky: storage("hair.render.shadow_sky", sky)?,
             uniforms: UniformArray::new(backend, "hair.render.shadows", SETS)?,
-            scenes: UniformArray::new(backend, "hair.render.opaque_scenes", SETS * MAX_LIGHTS)?,
+            scenes: UniformArray::new(backend, "hair.render.opaque_scenes", SETS * STORED_LIGHTS)?,
             cell_count,
         })
     }
@@ -226,9 +226,9 @@ impl Shadows {
     /// The shadows of opaque scenes.
     fn opaque(&mut self, list: &mut PassList, set: usize, lights: &Lights, draws: &[SectionDraw]) -> Result<()> {
         let Self { kernels, memory, .. } = self;
-        let casting = lights.lights.iter().take(MAX_LIGHTS).enumerate().filter(|(_, light)| light.casts);
+        let casting = lights.lights.iter().take(STORED_LIGHTS).enumerate().filter(|(_, light)| light.casts);
         for (light, scene) in casting.filter_map(|(index, light)| Some((index, light.opaque?))) {
-            let place = set * MAX_LIGHTS + light;
+            let place = set * STORED_LIGHTS + light;
             memory.scenes.upload(list, place, &[OpaqueUniform::new(&scene, light)]);
             let uniform = (place, memory.scenes.binding(place));
             draws.iter().try_for_each(|draw| kernels.opaque(list, uniform, scene.depth, draw))?;
