@@ -1,13 +1,14 @@
 //! Where pictures are taken: targets, lights, backdrop, the mesh that hair grows on, and the renderer.
 
 use anyhow::Result;
+use glam::Quat;
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HAIR_FORMAT, HairRenderer, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo,
-    Targets, Technique, VELOCITY_FORMAT, ViewDraw,
+    Counters, HAIR_FORMAT, HairRenderer, LightPlace, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands,
+    StrandInfo, Targets, Technique, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
@@ -78,6 +79,17 @@ impl Studio {
         let light_depth = LightDepth::new(backend, &lights, &opaque)?;
         backend.run(&uploads)?;
         Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer, lod })
+    }
+
+    /// Turns the lights to so many degrees about the vertical axis from where they stand.
+    pub(crate) fn turn_lights(&mut self, degrees: f32) {
+        let turn = Quat::from_rotation_y(degrees.to_radians());
+        self.lights = studio_lights();
+        for light in &mut self.lights.lights {
+            if let LightPlace::Directional { towards } = &mut light.place {
+                *towards = turn * *towards;
+            }
+        }
     }
 
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
