@@ -403,7 +403,7 @@ fn lights_that_no_lamp_is() {
         }
         // What is as thin as a plane, shines nowhere, or is turned inside out.
         let cones =
-            [(Vec3::NEG_Y, 0.0, 1e-7), (Vec3::NEG_Y, 3.1415, std::f32::consts::PI), (Vec3::splat(1e-30), 0.1, 0.4)];
+            [(Vec3::NEG_Y, 0.0, 1e-7), (Vec3::NEG_Y, 3.0, std::f32::consts::PI), (Vec3::splat(1e-30), 0.1, 0.4)];
         for (along, inner, outer) in cones {
             screen.lights.lights = vec![Light::spot(Vec3::Y, 1.0, Cone { along, inner, outer }, Vec3::ONE); MAX_LIGHTS];
             sound(&format!("{name}, cone {inner} {outer}"), screen, &hair());

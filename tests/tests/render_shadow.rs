@@ -138,7 +138,7 @@ fn lights_beyond_eight_take_no_pass_and_no_memory() {
         let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
         screen.renderer.draw(&mut list, &[view], &draws).unwrap();
         let groups = list.passes().filter_map(|(label, pass)| match pass {
-            Command::Compute(pass) if label.starts_with("hair.render.shadow") => Some((label, pass.groups.clone())),
+            Command::Compute(pass) if label.starts_with("hair.render.shadow") => Some((label, pass.groups)),
             _ => None,
         });
         (groups.collect::<Vec<_>>(), screen.renderer.shadow_bytes())

@@ -134,7 +134,6 @@ fn table(rows: &[&Row]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::change;
     use crate::figures::tests::row;
 
     #[test]
