@@ -10,8 +10,8 @@ use tressfx_core::backend::{DepthOrder, Format};
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{Camera, Pose, View, ViewError};
 use tressfx_render::{
-    AutoDesc, FibreScattering, Fill, HairRenderer, Light, Material, Pigment, PpllDesc, RenderDesc, SectionDraw,
-    ShortCutDesc, Tail, Technique, TilesDesc, ViewDraw,
+    AutoDesc, Cone, FibreScattering, Fill, HairRenderer, Light, MAX_LIGHTS, Material, Pigment, PpllDesc, RenderDesc,
+    SectionDraw, ShortCutDesc, Tail, Technique, TilesDesc, ViewDraw,
 };
 
 use support::gpu;
@@ -367,6 +367,46 @@ fn numbers_of_looks_and_lights_that_are_not_finite() {
             screen.lights.lights.push(Light::directional(Vec3::splat(bad), Vec3::splat(bad)));
             sound(&format!("{name}, {bad} in lights"), screen, &hair());
             screen.lights = usual;
+        }
+    });
+}
+
+#[test]
+fn lights_that_no_lamp_is() {
+    let below = Cone { along: Vec3::NEG_Y, inner: 0.1, outer: 0.4 };
+    each(&techniques()[..1], |name, screen, _| {
+        let eye = screen.view.lens().eye.truncate();
+        let places = [Vec3::ZERO, eye, Vec3::splat(1e30), Vec3::splat(f32::NAN), Vec3::splat(1e-30)];
+        for power in [0.0, 1.0, f32::INFINITY, f32::NAN] {
+            let at = |place| {
+                let color = Vec3::splat(power);
+                let spot = Light::spot(place, 0.5, below, color);
+                [
+                    Light::point(place, 1.0, color),
+                    spot,
+                    Light::point(place, 0.0, color),
+                    Light::directional(place, color),
+                ]
+            };
+            // More than are stored at a vertex: what is stored, and what is taken from the sky.
+            screen.lights.lights = places.iter().flat_map(|place| at(*place)).take(MAX_LIGHTS).collect();
+            sound(&format!("{name}, power {power}"), screen, &hair());
+            screen.lights.lights.reverse();
+            sound(&format!("{name}, power {power}, reversed"), screen, &hair());
+            for strand in [vec![Vec3::ZERO; 4], (0..4).map(|i| 0.2 * Vec3::Y * i as f32).collect()] {
+                sound(
+                    &format!("{name}, power {power}, one strand"),
+                    screen,
+                    &Groom::new(&[strand], Material::default()),
+                );
+            }
+        }
+        // What is as thin as a plane, shines nowhere, or is turned inside out.
+        let cones =
+            [(Vec3::NEG_Y, 0.0, 1e-7), (Vec3::NEG_Y, 3.0, std::f32::consts::PI), (Vec3::splat(1e-30), 0.1, 0.4)];
+        for (along, inner, outer) in cones {
+            screen.lights.lights = vec![Light::spot(Vec3::Y, 1.0, Cone { along, inner, outer }, Vec3::ONE); MAX_LIGHTS];
+            sound(&format!("{name}, cone {inner} {outer}"), screen, &hair());
         }
     });
 }

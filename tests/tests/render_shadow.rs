@@ -7,12 +7,14 @@ use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Random, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::backend::DepthOrder;
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shape::Ellipsoid;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::reference::{self, Arriving, Shadows, shadow_light, shadow_opaque};
 use tressfx_render::uniforms::{OpaqueUniform, ShadowUniform};
-use tressfx_render::{FibreScattering, Light, Lights, Lod, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw};
+use tressfx_render::{
+    Cone, FibreScattering, Light, Lights, Lod, MAX_LIGHTS, Material, OpaqueDepth, SectionDraw, ShadowDesc, ViewDraw,
+};
 
 use support::screen;
 
@@ -98,6 +100,56 @@ fn fibres_that_scatter_as_glass_are_shaded_as_in_f64() {
     let Some(mut screen) = shadowed(DESC()) else { return };
     screen.lights.sky = Vec3::new(0.5, 0.6, 0.7);
     let material = Material::default().with(|m| m.fibre = Some(FibreScattering::default()));
+    is_shaded_as_in_f64(&mut screen, material);
+}
+
+/// Lights of every kind, half of which have no share of their own at a vertex.
+fn sixteen() -> Vec<Light> {
+    let cone = Cone { along: Vec3::NEG_ONE, inner: 0.2, outer: 0.9 };
+    let light = |i: usize| {
+        let turned = glam::Quat::from_rotation_y(0.4 * i as f32) * Vec3::new(1.0, 0.5, 0.2);
+        let color = Vec3::new(0.2, 0.3, 0.1 * i as f32);
+        match i % 4 {
+            0 => Light::directional(turned, color),
+            1 => Light::point(2.0 * turned, 1.0, color),
+            2 => Light::spot(2.0 * turned, 1.0, Cone { along: -turned, ..cone }, color),
+            _ => Light::directional(turned, color).casts(i % 8 == 3),
+        }
+    };
+    (0..MAX_LIGHTS).map(light).collect()
+}
+
+#[test]
+fn sixteen_lights_shade_as_in_f64() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    screen.lights.lights = sixteen();
+    is_shaded_as_in_f64(&mut screen, Material::default());
+}
+
+#[test]
+fn lights_beyond_eight_take_no_pass_and_no_memory() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let groom = Groom::wavy(20, 8, 3, Material::default());
+    let mut frame = |lights: &[Light]| {
+        screen.lights.lights = lights.to_vec();
+        let mut list = PassList::new();
+        let section = screen.section(&mut list, &groom);
+        let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+        let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+        screen.renderer.draw(&mut list, &[view], &draws).unwrap();
+        let groups = list.passes().filter_map(|(label, pass)| match pass {
+            Command::Compute(pass) if label.starts_with("hair.render.shadow") => Some((label, pass.groups)),
+            _ => None,
+        });
+        (groups.collect::<Vec<_>>(), screen.renderer.shadow_bytes())
+    };
+    let all = sixteen();
+    let (four, bytes) = frame(&all[..4]);
+    assert!(four.len() == 5, "{four:?}");
+    assert_eq!(frame(&all), (four, bytes));
+}
+
+fn is_shaded_as_in_f64(screen: &mut Screen, material: Material) {
     let groom = Groom::wavy(500, 16, 1, material);
     let mut list = PassList::new();
     let section = screen.section(&mut list, &groom);
@@ -108,7 +160,7 @@ fn fibres_that_scatter_as_glass_are_shaded_as_in_f64() {
     let ticket = list.read_buffer(section.colors(), 0, 8 * vertices);
     let bytes = run_and_read(&mut *screen.backend, &list, ticket);
     // The same list leaves the same light.
-    let (arriving, _) = arriving(&mut screen, &DESC(), &groom);
+    let (arriving, _) = arriving(screen, &DESC(), &groom);
     let table = reference::FibreTable::of(&groom.material);
     let strands = reference::Strands { fibre: table.as_ref(), arriving: Some(&arriving), ..groom.reference() };
     let (count, mut worst, mut darkest) = (groom.shape.strands(), 0.0f64, f64::INFINITY);
@@ -270,6 +322,23 @@ fn hair_behind_a_ball_is_dark() {
         }
         assert!(dark > 300 && lit > 3000, "{dark} dark, {lit} lit");
     }
+}
+
+#[test]
+fn light_stops_behind_roots_only_where_hair_grows_on_skin() {
+    let mut darkest = [true, false].into_iter().filter_map(|skin| {
+        let desc = DESC().skin(skin);
+        let mut screen = shadowed(desc)?;
+        screen.lights.lights = vec![Light::directional(-Vec3::Y, Vec3::ONE)];
+        // Fibres that take nothing: what is dark is dark for the skin.
+        let groom = Groom::wavy(400, 8, 2, Material::default().with(|m| m.shadow_alpha = 0.0));
+        let (found, expected) = arriving(&mut screen, &desc, &groom);
+        let least = |all: &[Arriving]| all.iter().map(|one| one.lights[0].min(one.sky.w)).fold(1.0, f64::min);
+        assert!((least(&found) - least(&expected)).abs() < 0.02, "{}: {}", least(&found), least(&expected));
+        Some(least(&found))
+    });
+    let (Some(on_skin), Some(in_air)) = (darkest.next(), darkest.next()) else { return };
+    assert!(on_skin < 0.7 && in_air == 1.0, "{on_skin} {in_air}");
 }
 
 /// Hair that moves as a whole has the same shadow: what differs is only how it falls into the cells. The light does not come through the

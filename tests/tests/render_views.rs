@@ -168,8 +168,8 @@ fn what_cannot_be_drawn_is_refused() {
     };
     let none = Lights::default();
     assert_eq!(refused(&vec![(view, none.clone()); 9]), DrawError::Views(9));
-    let many = Lights { lights: vec![Light::directional(Vec3::Y, Vec3::ONE); 9], ..Lights::default() };
-    assert_eq!(refused(&[(view, many)]), DrawError::Lights(9));
+    let many = Lights { lights: vec![Light::directional(Vec3::Y, Vec3::ONE); 17], ..Lights::default() };
+    assert_eq!(refused(&[(view, many)]), DrawError::Lights(17));
     let large = View::new(view.view_matrix(), view.projection_matrix(), REVERSE, [96, 65]).unwrap();
     assert_eq!(refused(&[(large, none)]), DrawError::Size { view: [96, 65], renderer: SIZE });
     let leaves = Viewport::part([50, 0], [47, 64], SIZE).unwrap_err();

@@ -48,7 +48,7 @@ mod tests {
     use crate::figures::tests::row;
 
     fn run(rows: Vec<Row>) -> Run {
-        Run { setting: Extent::Quick.setting(), rows, note: None }
+        Run { setting: Extent::Quick.setting(), rows, changes: Vec::new(), note: None }
     }
 
     #[test]

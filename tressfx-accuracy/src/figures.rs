@@ -5,6 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
+use crate::change::Change;
+
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
@@ -95,6 +97,9 @@ impl Row {
 pub(crate) struct Run {
     pub(crate) setting: Setting,
     pub(crate) rows: Vec<Row>,
+    /// How much films change, where shadows are judged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) changes: Vec<Change>,
     /// What a reader has to know of rows that are older than others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) note: Option<String>,
@@ -174,7 +179,8 @@ pub(crate) mod tests {
         let mut report = Report::read(&path).unwrap();
         assert_eq!(report, Report::default());
         let rows = vec![Row { psnr_db: None, ..row("tiles", 0.125, 0.5) }, row("ppll", 0.25, 0.75)];
-        *report.run(Extent::Quick) = Some(Run { setting: Extent::Quick.setting(), rows, note: None });
+        *report.run(Extent::Quick) =
+            Some(Run { setting: Extent::Quick.setting(), rows, changes: Vec::new(), note: None });
         report.write(&path).unwrap();
         assert_eq!(Report::read(&path).unwrap(), report);
         std::fs::remove_file(path).unwrap();

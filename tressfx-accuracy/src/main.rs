@@ -3,6 +3,7 @@
 //! It runs the program `tressfx`, links none of the other crates, and writes `accuracy.json`, `README.md` and a plot of each
 //! scene. It is a program of its own, so that nobody who only wants to build and test waits for what draws plots.
 
+mod change;
 mod check;
 mod figures;
 mod measure;
@@ -97,9 +98,12 @@ fn main() -> Result<()> {
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
     let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;
-    let run = Run { setting: extent.setting(), rows, note: None };
+    let mut run = Run { setting: extent.setting(), rows, changes: Vec::new(), note: None };
     if let Some(stored) = stored.filter(|_| args.check) {
         return check::check(&stored, &run);
+    }
+    if extent == Extent::Light {
+        run.changes = change::changes(&Program::new(&args.program)?, &args.work)?;
     }
     std::fs::create_dir_all(&args.docs).with_context(|| args.docs.display().to_string())?;
     plot(&run, extent, &args.docs)?;

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
+use crate::change;
 use crate::figures::{Extent, Row, Run};
 use crate::plot;
 
@@ -27,7 +28,9 @@ fn light(run: &Run) -> String {
          Made by `cargo xtask accuracy --light`; with `--check` it measures again and fails where an error has grown by more than 10 %. \
          Each picture is compared with that of the reference renderer (`tressfx render --reference`), which traces rays with {} samples a \
          pixel through fibres as solids, and from what they meet to each light and into the sky, at {width}x{height}. All methods blend \
-         by `--oit tiles --places 4`. A groom is seen as it is in its file, and after {} frames of a head that is shaken. \
+         by `--oit tiles --places 4`, but for `nearest`, which the reference renderer draws (`--reference-light nearest`): the method of TressFX 4.1, \
+        light by the distance behind the nearest fibre that a light sees, in maps of 2048x2048, with so many radii from one fibre to the next. \
+        What is opaque is traced for it, and nothing shades the sky. A groom is seen as it is in its file, and after {} frames of a head that is shaken. \
          Mean FLIP of the whole picture, and PSNR in dB behind it:\n\n",
         run.setting.samples, run.setting.frames
     );
@@ -49,9 +52,12 @@ fn light(run: &Run) -> String {
         };
         let _ = writeln!(page, "| {scene} | {} |", cells(&figure));
     }
-    let bytes: Vec<String> = methods.iter().map(|(_, bytes)| format!("{:.1} MB", *bytes as f64 * 1e-6)).collect();
-    let _ = writeln!(page, "| memory of shadows | {} |", bytes.join(" | "));
-    page
+    let bytes = methods.iter().map(|(name, bytes)| match name.starts_with("nearest") {
+        true => "-".to_owned(),
+        false => format!("{:.1} MB", *bytes as f64 * 1e-6),
+    });
+    let _ = writeln!(page, "| memory of shadows | {} |", bytes.collect::<Vec<_>>().join(" | "));
+    page + &change::page(&run.changes)
 }
 
 fn page(run: &Run, extent: Extent) -> String {
@@ -134,7 +140,12 @@ mod tests {
     fn times_of_a_cpu_are_called_so_on_the_page_and_in_the_table() {
         let cpu = Row { adapter: "llvmpipe (LLVM)".into(), ..row("tiles", 0.125, 0.5) };
         let untimed = Row { passes: Vec::new(), psnr_db: None, ..row("tiles", 0.125, 0.5) };
-        let of = |row: Row| page(&Run { setting: Extent::Quick.setting(), rows: vec![row], note: None }, Extent::Quick);
+        let of = |row: Row| {
+            page(
+                &Run { setting: Extent::Quick.setting(), rows: vec![row], changes: Vec::new(), note: None },
+                Extent::Quick,
+            )
+        };
         let (software, hardware, untimed) = (of(cpu), of(row("tiles", 0.125, 0.5)), of(untimed));
         assert!(software.contains("a CPU that plays a GPU") && software.contains("| 0.500 (CPU) |"), "{software}");
         assert!(!hardware.contains("CPU") && hardware.contains("| tiles | wgpu | 0.12500 | 40.00 | 30 | 0.500 |"));
@@ -142,6 +153,7 @@ mod tests {
         let lit = light(&Run {
             setting: Extent::Light.setting(),
             rows: vec![super::tests::row("no-shadows", 0.125, 0.5)],
+            changes: Vec::new(),
             note: None,
         });
         assert!(lit.contains("| scene | no-shadows |\n|---|---|\n| curly-near | 0.1250, 40.0 |"), "{lit}");

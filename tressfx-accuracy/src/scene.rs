@@ -48,30 +48,38 @@ pub(crate) struct Bounds {
     pub(crate) max: [f64; 3],
 }
 
-/// Name of the groom, what `tressfx` takes, and whether it lies in the folder of real grooms.
-const GROOMS: [(&str, &str, bool); 6] = [
-    ("curly", "builtin:curly", false),
-    ("fur", "builtin:fur", false),
-    ("long", "builtin:long", false),
-    ("dense", "builtin:long:131072:32", false),
-    ("mohawk", "tressfx41_ratboy/Ratboy_mohawk.tfx", true),
-    ("sintel", "sintel_lite/GEO-sintel_hair_emit.002-sintel_hair.tfx", true),
+/// What is looked at: a line each.
+#[derive(Clone, Copy, Debug)]
+struct Groom {
+    name: &'static str,
+    /// As `tressfx` takes it, or a file in the folder of real grooms.
+    file: &'static str,
+    is_real: bool,
+    /// Whether its light is judged.
+    is_lit: bool,
+}
+
+const GROOMS: &[Groom] = &[
+    Groom { name: "curly", file: "builtin:curly", is_real: false, is_lit: true },
+    Groom { name: "fur", file: "builtin:fur", is_real: false, is_lit: true },
+    Groom { name: "long", file: "builtin:long", is_real: false, is_lit: true },
+    Groom { name: "dense", file: "builtin:long:131072:32", is_real: false, is_lit: false },
+    Groom { name: "mohawk", file: "tressfx41_ratboy/Ratboy_mohawk.tfx", is_real: true, is_lit: true },
+    Groom { name: "sintel", file: "sintel_lite/GEO-sintel_hair_emit.002-sintel_hair.tfx", is_real: true, is_lit: true },
 ];
 
 /// In a quick run each groom is seen from one distance, and the dense one has fewer strands.
 const QUICK: [(&str, Place); 6] =
     [("curly", NEAR), ("fur", FAR), ("long", MIDDLE), ("dense", NEAR), ("mohawk", FAR), ("sintel", MIDDLE)];
-/// The grooms whose light is judged.
-const LIT: [&str; 5] = ["curly", "fur", "long", "mohawk", "sintel"];
 const QUICK_DENSE: &str = "builtin:long:32768:16";
 
 /// All scenes; those of real grooms have no groom unless TRESSFX_ASSETS names a folder.
 pub(crate) fn scenes(extent: Extent) -> Vec<Scene> {
     let assets = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from);
     let scene = |name: &str, place: Place, moment: Moment| {
-        let (_, file, is_real) = GROOMS.iter().find(|groom| groom.0 == name).expect("a groom of the table");
-        let file = if (name, extent) == ("dense", Extent::Quick) { QUICK_DENSE } else { file };
-        let groom = match is_real {
+        let groom = GROOMS.iter().find(|groom| groom.name == name).expect("a groom of the table");
+        let file = if (name, extent) == ("dense", Extent::Quick) { QUICK_DENSE } else { groom.file };
+        let groom = match groom.is_real {
             true => assets.as_ref().map(|assets| assets.join(file).to_string_lossy().into_owned()),
             false => Some(file.to_owned()),
         };
@@ -86,11 +94,12 @@ pub(crate) fn scenes(extent: Extent) -> Vec<Scene> {
         Extent::Quick => QUICK.iter().map(|&(name, place)| scene(name, place, Moment::Still)).collect(),
         Extent::Full => {
             let places = [NEAR, MIDDLE, FAR];
-            GROOMS.iter().flat_map(|groom| places.map(|place| scene(groom.0, place, Moment::Still))).collect()
+            GROOMS.iter().flat_map(|groom| places.map(|place| scene(groom.name, place, Moment::Still))).collect()
         }
         Extent::Light => {
             let moments = [Moment::Rest, Moment::Shaken];
-            LIT.iter().flat_map(|&name| moments.map(|moment| scene(name, MIDDLE, moment))).collect()
+            let lit = GROOMS.iter().filter(|groom| groom.is_lit);
+            lit.flat_map(|groom| moments.map(|moment| scene(groom.name, MIDDLE, moment))).collect()
         }
     }
 }
@@ -127,7 +136,10 @@ mod tests {
 
     #[test]
     fn there_are_enough_scenes_and_none_twice() {
-        for (extent, count) in [(Extent::Quick, 6), (Extent::Full, 18), (Extent::Light, 10)] {
+        let lit = GROOMS.iter().filter(|groom| groom.is_lit).count();
+        for (extent, count) in
+            [(Extent::Quick, QUICK.len()), (Extent::Full, 3 * GROOMS.len()), (Extent::Light, 2 * lit)]
+        {
             let mut names: Vec<_> = scenes(extent).into_iter().map(|scene| scene.name).collect();
             names.sort();
             names.dedup();

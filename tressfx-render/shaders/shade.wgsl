@@ -6,7 +6,7 @@ import package::grid::{GROUP, thread_index};
 import package::ribbon::is_sound;
 @if(fibre) import package::scattering::{Fibre, fibres, scatter, under_sky};
 import package::section::{SectionUniform, drawn_vertex, strand_random};
-import package::view::{ViewUniform, towards, towards_eye};
+import package::view::{STORED_LIGHTS, ViewUniform, towards, towards_eye};
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
 @group(0) @binding(1) var<uniform> section: SectionUniform;
@@ -35,7 +35,7 @@ fn unit(v: vec3<f32>) -> vec3<f32> {
     return v * inverseSqrt(max(dot(v, v), 1e-20));
 }
 
-// What arrives at a vertex: of light from everywhere from the direction `d` the share `sky.w + sky.xyz . d`, and the shares of the lights.
+// What arrives at a vertex: of light from everywhere from the direction `d` the share `sky.w + sky.xyz . d`, and the shares of the first lights.
 struct Arriving {
     sky: vec4<f32>,
     lights: array<vec4<f32>, 2>,
@@ -51,6 +51,15 @@ fn arriving_at(i: u32) -> Arriving {
 @if(!shadows)
 fn arriving_at(i: u32) -> Arriving {
     return Arriving(vec4(0.0, 0.0, 0.0, 1.0), array(vec4(1.0), vec4(1.0)));
+}
+
+// How much of a light arrives: as it is stored, or of what arrives from everywhere, from its direction.
+fn share_of(shares: Arriving, light: u32, direction: vec3<f32>) -> f32 {
+    if light < STORED_LIGHTS {
+        return shares.lights[light / 4u][light % 4u];
+    }
+    let by_sky = saturate(shares.sky.w + dot(shares.sky.xyz, direction));
+    return select(1.0, by_sky, ((view.casting >> light) & 1u) == 1u);
 }
 
 // The mean over all directions of the light from above and below that arrives.
@@ -71,7 +80,7 @@ fn lit(point: vec3<f32>, fibre: Fibre, i: u32) -> vec3<f32> {
     }
     for (var light = 0u; light < view.light_count; light++) {
         let from_light = towards(view.lights[light], point);
-        let share = mix(1.0, shares.lights[light / 4u][light % 4u], section.self_shadow);
+        let share = mix(1.0, share_of(shares, light, from_light.xyz), section.self_shadow);
         @if(!fibre) { sum += view.lights[light].color.rgb * (from_light.w * share) * scatter(fibre, eye, from_light.xyz); }
         @if(fibre) {
             let behind = fibres(max(share, DARK), section.shadow_alpha);

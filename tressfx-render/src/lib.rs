@@ -76,7 +76,7 @@ pub use auto::AutoDesc;
 pub use counters::Counters;
 pub use draw_error::DrawError;
 pub use fibre::{FibreScattering, Pigment};
-pub use lights::{Cone, Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth};
+pub use lights::{Cone, Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth, STORED_LIGHTS};
 pub use lod::{Bends, Lod, LodDesc};
 pub use look::{Look, NoLook};
 pub use material::{Highlight, Material, MaterialError};

@@ -5,7 +5,11 @@ use tressfx_core::id::TextureId;
 use tressfx_core::view::View;
 
 /// Lights that a frame can have.
-pub const MAX_LIGHTS: usize = 8;
+pub const MAX_LIGHTS: usize = 16;
+
+/// Of so many lights, the first ones, it is stored at each vertex how much arrives. Shadows in the light of others are taken from what arrives from
+/// everywhere, in their direction, when a vertex is shaded: they cost no memory and no pass.
+pub const STORED_LIGHTS: usize = 8;
 
 /// Where a light is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +79,7 @@ pub struct Light {
     pub color: Vec3,
     /// Whether hair casts its shadow on hair in this light, where the renderer makes shadows.
     pub casts: bool,
-    /// What casts its shadow on hair beside hair. Where nothing is known, light does not pass behind the roots of strands.
+    /// What casts its shadow on hair beside hair, for one of the first [`STORED_LIGHTS`]. Where nothing is known, light does not pass behind the roots of strands.
     pub opaque: Option<OpaqueDepth>,
 }
 
@@ -115,6 +119,14 @@ pub struct Lights {
     pub sky: Vec3,
     /// Light from below, linear RGB.
     pub ground: Vec3,
-    /// Single lights, at most [`MAX_LIGHTS`].
+    /// Single lights, at most [`MAX_LIGHTS`]. Those whose shadows matter most come first.
     pub lights: Vec<Light>,
+}
+
+impl Lights {
+    /// A bit for each light that casts shadows.
+    pub(crate) fn casting(&self) -> u32 {
+        let lights = self.lights.iter().take(MAX_LIGHTS).enumerate();
+        lights.fold(0, |bits, (index, light)| bits | u32::from(light.casts) << index)
+    }
 }

@@ -29,7 +29,7 @@ mod velocity;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::lights::MAX_LIGHTS;
+use crate::lights::STORED_LIGHTS;
 use crate::uniforms::SectionUniform;
 
 pub use crate::scattering::FibreTable;
@@ -58,13 +58,13 @@ pub use velocity::velocity;
 pub struct Arriving {
     /// Of light from everywhere, from the direction `d`, the share `w + (x, y, z) . d`.
     pub sky: DVec4,
-    /// The shares of the lights.
-    pub lights: [f64; MAX_LIGHTS],
+    /// The shares of the first lights.
+    pub lights: [f64; STORED_LIGHTS],
 }
 
 impl Arriving {
     /// All of it.
-    pub const ALL: Self = Self { sky: DVec4::W, lights: [1.0; MAX_LIGHTS] };
+    pub const ALL: Self = Self { sky: DVec4::W, lights: [1.0; STORED_LIGHTS] };
 }
 
 /// The strands of a section on the CPU: what its buffers hold.

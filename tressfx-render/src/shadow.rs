@@ -3,7 +3,7 @@
 //! Each light that casts has a box of cells around the hair, as the light sees it. What fibres take in each cell is counted, and summed up
 //! along the way of the light: opacity shadow maps (Kim and Neumann 2001). The sky has a box in the axes of the world, through which light is followed from
 //! 26 directions. A light that has no box, because there are more than [`ShadowDesc::lights`] or because it stands among the hair, is taken
-//! from what arrives from everywhere, in its direction. Skin is where roots are: light does not pass behind them.
+//! from what arrives from everywhere, in its direction. Skin is where roots are, if hair grows on any: light does not pass behind them.
 //!
 //! A fibre takes the share [`Material::shadow_alpha`](crate::Material::shadow_alpha) of the light that meets it.
 
@@ -18,7 +18,7 @@ use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
-use crate::lights::{Lights, MAX_LIGHTS};
+use crate::lights::{Lights, STORED_LIGHTS};
 use crate::shaders::GROUP;
 use crate::strands::SectionDraw;
 use crate::views::MAX_VIEWS;
@@ -44,12 +44,15 @@ pub struct ShadowDesc {
     pub lights: u32,
     /// Strands of a section that are counted at most; of more an even sample stands for all. At least 1.
     pub samples: u32,
+    /// Whether hair grows on skin that light does not pass. Where the opaque scene is not known, as in the light of the sky, skin is then taken
+    /// to be behind the roots of strands.
+    pub skin: bool,
 }
 
 impl Default for ShadowDesc {
-    /// Three lights with 192 x 192 x 48 cells, 21 MB, and 32 cells along the longest side of the groom.
+    /// Three lights with 192 x 192 x 48 cells, 21 MB, 32 cells along the longest side of the groom, and skin behind roots.
     fn default() -> Self {
-        Self { texels: 192, layers: 48, cells: 32, lights: 3, samples: 32_768 }
+        Self { texels: 192, layers: 48, cells: 32, lights: 3, samples: 32_768, skin: true }
     }
 }
 
@@ -78,12 +81,18 @@ impl ShadowDesc {
         Self { samples, ..self }
     }
 
+    /// The same with skin behind the roots of strands, or with nothing that hair grows on.
+    #[must_use]
+    pub fn skin(self, skin: bool) -> Self {
+        Self { skin, ..self }
+    }
+
     fn check(&self) -> Result<()> {
         let checks = [
             ("texels", self.texels, 8..=1024),
             ("layers", self.layers, 8..=1024),
             ("cells", self.cells, 8..=256),
-            ("lights", self.lights, 0..=MAX_LIGHTS as u32),
+            ("lights", self.lights, 0..=STORED_LIGHTS as u32),
             ("samples", self.samples, 1..=1 << 20),
         ];
         if u32::try_from(cells_of_all(self)).is_err() {
@@ -118,7 +127,7 @@ pub(crate) struct Memory {
 const SETS: usize = 1 + MAX_VIEWS;
 
 /// Bytes of the boxes of all frames.
-const BOUNDS_BYTES: u64 = 24 * (1 + MAX_LIGHTS as u64);
+const BOUNDS_BYTES: u64 = 24 * (1 + STORED_LIGHTS as u64);
 
 impl Memory {
     fn new(backend: &mut dyn Backend, desc: &ShadowDesc) -> Result<Self> {
@@ -130,7 +139,7 @@ impl Memory {
             cells: storage("hair.render.shadow_cells", 4 * cell_count)?,
             sky: storage("hair.render.shadow_sky", sky)?,
             uniforms: UniformArray::new(backend, "hair.render.shadows", SETS)?,
-            scenes: UniformArray::new(backend, "hair.render.opaque_scenes", SETS * MAX_LIGHTS)?,
+            scenes: UniformArray::new(backend, "hair.render.opaque_scenes", SETS * STORED_LIGHTS)?,
             cell_count,
         })
     }
@@ -217,9 +226,9 @@ impl Shadows {
     /// The shadows of opaque scenes.
     fn opaque(&mut self, list: &mut PassList, set: usize, lights: &Lights, draws: &[SectionDraw]) -> Result<()> {
         let Self { kernels, memory, .. } = self;
-        let casting = lights.lights.iter().take(MAX_LIGHTS).enumerate().filter(|(_, light)| light.casts);
+        let casting = lights.lights.iter().take(STORED_LIGHTS).enumerate().filter(|(_, light)| light.casts);
         for (light, scene) in casting.filter_map(|(index, light)| Some((index, light.opaque?))) {
-            let place = set * MAX_LIGHTS + light;
+            let place = set * STORED_LIGHTS + light;
             memory.scenes.upload(list, place, &[OpaqueUniform::new(&scene, light)]);
             let uniform = (place, memory.scenes.binding(place));
             draws.iter().try_for_each(|draw| kernels.opaque(list, uniform, scene.depth, draw))?;

@@ -74,8 +74,8 @@ gpu_struct! {
         pub target_size: [u32; 2],
         /// How many of `lights` there are.
         pub light_count: u32,
-        /// Nothing.
-        pub unused: u32,
+        /// A bit for each of them that casts shadows.
+        pub casting: u32,
         /// The lights.
         pub lights: [LightUniform; MAX_LIGHTS],
     }
@@ -213,7 +213,7 @@ impl ViewUniform {
             offset: view.viewport().offset(),
             target_size: view.viewport().target(),
             light_count: lights.lights.len().min(MAX_LIGHTS) as u32,
-            unused: 0,
+            casting: lights.casting(),
             lights: LightUniform::all(lights),
         }
     }

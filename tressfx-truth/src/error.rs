@@ -56,6 +56,9 @@ pub enum TruthError {
     /// Radiance of the sky or of the ground that cannot be.
     #[error("the light of the sky or of the ground is not finite, or negative")]
     Sky,
+    /// Fibres that are no distance apart.
+    #[error("the spacing of fibres is not above 0, or not finite")]
+    Spacing,
     /// A share is not from 0 to 1.
     #[error("section {section}: {what} is not from 0 to 1")]
     Share {

@@ -34,6 +34,8 @@
 //!   direction stands for the sky. The mean of such pictures is the exact one. What is left to chance is an R3 sequence, shifted
 //!   by a hash of the pixel, so that it is spread evenly over the rays of a pixel.
 //!
+//! Beside this truth, [`ShadowMethod::NearestFibre`] has a method to compare with: light by the nearest fibre that each light sees.
+//!
 //! [`Truth::new`] takes a view and sections, [`Truth::render`] gives a [`Picture`] with an estimate of its sampling error,
 //! [`Truth::layers`] the layers along one ray. It takes 52 bytes a vertex, about 80 a pixel, and up to 256 MB for the lists of
 //! segments: more work is done in several passes over the picture. Light takes 12 bytes a vertex for each light and for the sky,
@@ -52,6 +54,7 @@ mod fibres;
 mod layer;
 mod light;
 mod lit;
+mod nearest;
 mod opaque;
 mod pattern;
 mod picture;
@@ -65,7 +68,7 @@ mod truth;
 
 pub use error::TruthError;
 pub use layer::Layer;
-pub use light::{Illumination, Light, LitSection, OpaqueMesh};
+pub use light::{Illumination, Light, LitSection, OpaqueMesh, ShadowMethod};
 pub use pattern::sample_points;
 pub use picture::{Picture, SamplingError};
 pub use section::Section;

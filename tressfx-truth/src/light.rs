@@ -49,6 +49,21 @@ pub struct OpaqueMesh<'a> {
     pub pose: Pose,
 }
 
+/// How much light is taken to come through strands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum ShadowMethod {
+    /// What a ray finds: the truth.
+    #[default]
+    Traced,
+    /// By the distance behind the nearest fibre that a light sees, as TressFX 4.1 approximates deep shadows; what is opaque is traced, and strands
+    /// do not shade the sky.
+    NearestFibre {
+        /// Distance from one fibre to the next one behind it, in radii of the thickest fibre; 0.4 in TressFX 4.1.
+        spacing: f64,
+    },
+}
+
 /// All light, and what is in its way beside the strands.
 #[derive(Clone, Copy, Debug)]
 pub struct Illumination<'a> {
@@ -63,6 +78,8 @@ pub struct Illumination<'a> {
     pub sections: &'a [LitSection<'a>],
     /// What is opaque.
     pub meshes: &'a [OpaqueMesh<'a>],
+    /// How much comes through strands.
+    pub shadows: ShadowMethod,
 }
 
 impl Light {
@@ -84,6 +101,11 @@ impl Illumination<'_> {
         let is_radiance = |color: Vec3| color.is_finite() && color.min_element() >= 0.0;
         if !is_radiance(self.sky) || !is_radiance(self.ground) {
             return Err(TruthError::Sky);
+        }
+        if let ShadowMethod::NearestFibre { spacing } = self.shadows
+            && !(spacing > 0.0 && spacing.is_finite())
+        {
+            return Err(TruthError::Spacing);
         }
         if self.sections.len() != vertices.len() {
             return Err(TruthError::Sections { found: self.sections.len(), expected: vertices.len() });

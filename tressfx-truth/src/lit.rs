@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 
 use crate::error::TruthError;
 use crate::fibres::{Fibres, Part, Place};
-use crate::light::{Illumination, Light, LitSection};
+use crate::light::{Illumination, Light, LitSection, ShadowMethod};
+use crate::nearest::{DepthMap, From};
 use crate::opaque::Opaque;
 use crate::rays::Rays;
 use crate::shadow::{ShadowWork, Shadows, Start};
@@ -20,11 +21,24 @@ enum Source {
     Shadowless,
 }
 
+impl Source {
+    /// From where, if it is shaded.
+    fn shines_from(&self) -> Option<From> {
+        match *self {
+            Self::Directional(towards) => Some(From::Way(-towards)),
+            Self::Point(position) => Some(From::Point(position)),
+            Self::Shadowless => None,
+        }
+    }
+}
+
 /// Illumination, ready for layers.
 #[derive(Debug)]
 pub(crate) struct Lit {
     rays: Rays,
     shadows: Shadows,
+    /// Of each source, where strands shade by the nearest fibre.
+    maps: Option<Vec<Option<DepthMap>>>,
     sources: Vec<Source>,
     sky: DVec3,
     ground: DVec3,
@@ -81,10 +95,18 @@ impl Lit {
             let index = order.map(|(strand, vertex)| part.shape.index(strand, vertex) as usize);
             colors.extend(index.flat_map(|index| all_colors(section, index)));
         }
+        let sources: Vec<Source> = light.lights.iter().map(source).collect();
+        let maps = match light.shadows {
+            ShadowMethod::Traced => None,
+            ShadowMethod::NearestFibre { spacing } => {
+                Some(sources.iter().map(|source| DepthMap::new(fibres, source.shines_from()?, spacing)).collect())
+            }
+        };
         Ok(Self {
             rays: *rays,
             shadows: Shadows::new(fibres, &through, Opaque::new(rays, light.meshes)?),
-            sources: light.lights.iter().map(source).collect(),
+            maps,
+            sources,
             sky: light.sky.as_dvec3(),
             ground: light.ground.as_dvec3(),
             colors,
@@ -106,12 +128,20 @@ impl Lit {
                 Source::Shadowless => (DVec3::ZERO, 0.0),
             };
             let is_shaded = self_shadow > 0.0 && end > 0.0 && color != DVec3::ZERO;
-            let light = if is_shaded { self.shadows.light(work, fibres, &start, towards, end) } else { 1.0 };
+            let light = match &self.maps {
+                _ if !is_shaded => 1.0,
+                None => self.shadows.light(work, fibres, &start, towards, end),
+                Some(_) if self.shadows.is_blocked(work, &start, towards, end) => 0.0,
+                Some(maps) => {
+                    let through = self.shadows.through(start.strand);
+                    maps[index].as_ref().map_or(1.0, |map| map.light(point, through))
+                }
+            };
             sum += color * (1.0 + self_shadow * (light - 1.0));
         }
         let color = self.channel(place, self.sources.len());
         let open = 0.5 * (self.sky + self.ground);
-        if self_shadow == 0.0 || color * open == DVec3::ZERO {
+        if self_shadow == 0.0 || color * open == DVec3::ZERO || self.maps.is_some() {
             return sum + color * open;
         }
         let height = 1.0 - 2.0 * sky.x;

@@ -70,7 +70,7 @@ impl Shadows {
     pub(crate) fn light(&self, work: &mut ShadowWork, fibres: &Fibres, start: &Start, towards: DVec3, end: f64) -> f64 {
         work.rays += 1;
         let ray = Ray { origin: start.point, direction: towards };
-        if self.opaque.blocks(&mut work.stack, &ray, start.radius, end) {
+        if self.is_blocked(work, start, towards, end) {
             return 0.0;
         }
         let ShadowWork { stack, crossings, .. } = work;
@@ -91,8 +91,14 @@ impl Shadows {
         if light < DARK { 0.0 } else { light }
     }
 
+    /// Whether what is opaque is in the way.
+    pub(crate) fn is_blocked(&self, work: &mut ShadowWork, start: &Start, towards: DVec3, end: f64) -> bool {
+        let ray = Ray { origin: start.point, direction: towards };
+        self.opaque.blocks(&mut work.stack, &ray, start.radius, end)
+    }
+
     /// What a crossing of a strand lets through.
-    fn through(&self, strand: u32) -> f64 {
+    pub(crate) fn through(&self, strand: u32) -> f64 {
         let after = self.sections.partition_point(|(first, _)| *first <= strand);
         self.sections[after - 1].1
     }

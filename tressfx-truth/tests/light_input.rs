@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use support::light::{Lamps, LitHair, lit, render_lit};
 use support::{Hair, orthographic, samples};
 use tressfx_core::view::Pose;
-use tressfx_truth::{Illumination, Light, OpaqueMesh, Truth, TruthError};
+use tressfx_truth::{Illumination, Light, OpaqueMesh, ShadowMethod, Truth, TruthError};
 
 const LINE: [Vec3; 3] = [Vec3::new(-3.0, 0.0, 0.0), Vec3::ZERO, Vec3::new(3.0, 0.0, 0.0)];
 
@@ -30,7 +30,14 @@ fn arrays_of_another_length_are_named() {
     assert_eq!(error(&short, &lamps()), "section 0: 4 colours in a light, its counts ask for 3");
     let dark = LitHair { lights: Vec::new(), ..hair() };
     assert_eq!(error(&dark, &lamps()), "section 0: 0 lights, its counts ask for 1");
-    let light = Illumination { lights: &[], sky: Vec3::ONE, ground: Vec3::ONE, sections: &[], meshes: &[] };
+    let light = Illumination {
+        lights: &[],
+        sky: Vec3::ONE,
+        ground: Vec3::ONE,
+        sections: &[],
+        meshes: &[],
+        shadows: ShadowMethod::Traced,
+    };
     let hair = hair().hair;
     let truth = Truth::new(&orthographic([8, 8]), &[hair.section()], None).unwrap();
     assert_eq!(truth.lit_by(&light).unwrap_err(), TruthError::Sections { found: 0, expected: 1 });
@@ -65,9 +72,24 @@ fn meshes_without_sense_are_named() {
     let found = error(&hair(), &Lamps { triangles: triangles.clone(), pose, ..lamps() });
     assert!(found.starts_with("mesh 0: pose:"), "{found}");
     let mesh = OpaqueMesh { positions: &triangles, indices: &[0, 1, 3], pose: Pose::IDENTITY };
-    let light = Illumination { lights: &[], sky: Vec3::ONE, ground: Vec3::ONE, sections: &[], meshes: &[mesh] };
+    let light = Illumination {
+        lights: &[],
+        sky: Vec3::ONE,
+        ground: Vec3::ONE,
+        sections: &[],
+        meshes: &[mesh],
+        shadows: ShadowMethod::Traced,
+    };
     let found = Truth::new(&orthographic([8, 8]), &[], None).unwrap().lit_by(&light).unwrap_err();
     assert_eq!(found.to_string(), "mesh 0: vertex 3 of 3");
+}
+
+#[test]
+fn fibres_that_are_no_distance_apart_are_an_error() {
+    for spacing in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let found = error(&hair(), &Lamps { shadows: ShadowMethod::NearestFibre { spacing }, ..lamps() });
+        assert_eq!(found, TruthError::Spacing.to_string());
+    }
 }
 
 #[test]

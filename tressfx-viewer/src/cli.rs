@@ -172,6 +172,9 @@ pub(crate) struct Render {
     /// A picture along the strands, from the root at its left to the tip; each guide takes one of its rows by chance
     #[arg(long, value_name = "FILE.png|jpg")]
     pub(crate) strand_texture: Option<PathBuf>,
+    /// Degrees by which the lights turn about the vertical axis from frame to frame
+    #[arg(long, value_name = "DEGREES", default_value = "0", allow_negative_numbers = true)]
+    pub(crate) light_turn: f32,
     /// A mesh to be drawn with the hair, in its unit
     #[arg(long, value_name = "FILE.obj")]
     pub(crate) mesh: Option<PathBuf>,
@@ -197,6 +200,9 @@ pub(crate) struct Render {
     /// Where the reference renderer has its colours from
     #[arg(long, value_enum, default_value_t = ReferenceLight::Traced, requires = "reference")]
     pub(crate) reference_light: ReferenceLight,
+    /// Distance from one fibre to the next one behind it in radii, for `--reference-light nearest`
+    #[arg(long, default_value = "0.4", value_name = "N", requires = "reference")]
+    pub(crate) fibre_spacing: f64,
 }
 
 #[derive(Debug, Args)]
@@ -306,6 +312,8 @@ pub(crate) enum ReferenceLight {
     Given,
     /// Rays towards each light and the sky, through the strands and past the meshes
     Traced,
+    /// By the distance behind the nearest fibre that a light sees, as TressFX 4.1 does: a method to compare with
+    Nearest,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

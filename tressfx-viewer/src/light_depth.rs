@@ -14,7 +14,7 @@ use tressfx_core::view::{Pose, View};
 use tressfx_render::uniforms::ViewUniform;
 use tressfx_render::{Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth, VIEW_MODULE};
 
-use crate::scene::SceneMesh;
+use crate::scene::MeshDraw;
 
 const LABEL: Label = "viewer.light_depth";
 
@@ -56,18 +56,19 @@ impl LightDepth {
         })
     }
 
-    /// Draws what the lights see of the meshes, which are in their rest pose moved by `head`. Gives the lights back with what they see.
+    /// Draws what the lights see of the meshes, which are all moved by `head`. Gives the lights back with what they see.
     ///
     /// # Errors
     /// None that can be reached: the names of bindings are those of the shader.
-    pub fn draw(&self, list: &mut PassList, lights: &Lights, meshes: &[SceneMesh], head: Pose) -> Result<Lights> {
+    pub fn draw(&self, list: &mut PassList, lights: &Lights, meshes: &[MeshDraw], head: Pose) -> Result<Lights> {
         let mut lit = lights.clone();
+        meshes.iter().for_each(|mesh| mesh.upload(list));
         let casting = lit.lights.iter_mut().filter_map(|light| Some((way_of(light)?, light)));
         for (index, ((way, light), &depth)) in casting.zip(&self.textures).enumerate() {
             let Some(view) = self.view(way, head) else { continue };
             self.views.upload(list, index, &[ViewUniform::new(&view, &Lights::default())]);
             let mut pass = RasterPass::new(LABEL).depth(depth, Load::Clear(DepthOrder::Standard.far()));
-            for mesh in meshes {
+            for MeshDraw { mesh, .. } in meshes {
                 let bindings = self.pipeline.bind(&mesh.bindings(self.views.binding(index)))?;
                 pass = pass.draw(Draw::new(&self.pipeline, &bindings, mesh.index_count, 1));
             }
@@ -94,5 +95,31 @@ fn way_of(light: &Light) -> Option<Vec3> {
     match light.place {
         LightPlace::Directional { towards } if light.casts => (-towards).try_normalize(),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::null::NullBackend;
+    use tressfx_core::pass::Command;
+    use tressfx_core::shape::Ellipsoid;
+
+    use super::*;
+    use crate::scene::{SceneMesh, Surface, studio_lights};
+
+    #[test]
+    fn lights_see_meshes_where_they_are_in_this_frame() {
+        let mut backend = NullBackend::default();
+        let ball = Mesh::ellipsoid(&Ellipsoid { center: Vec3::ZERO, radii: Vec3::ONE }, 8);
+        let mesh = SceneMesh::new(&mut backend, &mut PassList::new(), &ball).unwrap();
+        let lights = studio_lights();
+        let depth = LightDepth::new(&mut backend, &lights, &[ball]).unwrap();
+        let mut list = PassList::new();
+        let meshes = [MeshDraw { mesh: &mesh, surface: Surface::default(), pose: Pose::IDENTITY }];
+        let lit = depth.draw(&mut list, &lights, &meshes, Pose::IDENTITY).unwrap();
+        assert!(lit.lights.iter().all(|light| light.opaque.is_some()));
+        let first = list.commands().iter().position(Command::is_pass).unwrap();
+        let is_place = |command: &Command| matches!(command, Command::Upload { dst, .. } if mesh.is_placed_by(*dst));
+        assert!(list.commands()[..first].iter().any(is_place), "the place of the mesh comes before what draws it");
     }
 }

@@ -13,7 +13,7 @@ use image::RgbImage;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_render::SectionDraw;
-use tressfx_truth::{Section, Truth};
+use tressfx_truth::{Section, ShadowMethod, Truth};
 
 use crate::cli::{ReferenceLight, Render};
 use crate::picture::{developed, texels};
@@ -50,13 +50,17 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
     let strands = strands(run, studio, &tickets)?;
     let light = match args.reference_light {
         ReferenceLight::Given => None,
-        ReferenceLight::Traced => Some(Unshaded::new(run, studio)?),
+        ReferenceLight::Traced | ReferenceLight::Nearest => Some(Unshaded::new(run, studio)?),
+    };
+    let shadows = match args.reference_light {
+        ReferenceLight::Nearest => ShadowMethod::NearestFibre { spacing: args.fibre_spacing },
+        ReferenceLight::Given | ReferenceLight::Traced => ShadowMethod::Traced,
     };
     let begun = Instant::now();
     let truth = truth(run, studio, &strands, &depth)?;
     let truth = match &light {
         None => truth,
-        Some(light) => light.on(truth, studio, run.head(&args.scene))?,
+        Some(light) => light.on(truth, studio, run.head(&args.scene), shadows)?,
     };
     let bar = Progress::new(0, "tile");
     let picture = truth.render(args.samples, &|progress| bar.advance_of(progress.tiles));

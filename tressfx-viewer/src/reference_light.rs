@@ -5,7 +5,7 @@ use glam::Vec3;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
 use tressfx_render::{LightPlace, Lights};
-use tressfx_truth::{Illumination, Light, LitSection, OpaqueMesh, Truth};
+use tressfx_truth::{Illumination, Light, LitSection, OpaqueMesh, ShadowMethod, Truth};
 
 use crate::picture::texels;
 use crate::reference::request_colors;
@@ -34,7 +34,7 @@ impl Unshaded {
     }
 
     /// The strands in the light of the studio, with the meshes on the head that is at `head`.
-    pub(crate) fn on(&self, truth: Truth, studio: &Studio, head: Pose) -> Result<Truth> {
+    pub(crate) fn on(&self, truth: Truth, studio: &Studio, head: Pose, shadows: ShadowMethod) -> Result<Truth> {
         let Lights { sky, ground, lights } = &studio.lights;
         let sources: Vec<Light> = lights.iter().map(source).collect();
         let colors = self.lights.iter().zip(&self.sky).zip(&studio.sections);
@@ -50,7 +50,8 @@ impl Unshaded {
         let meshes = meshes.map(|mesh| OpaqueMesh { positions: &mesh.positions, indices: &mesh.indices, pose: head });
         let meshes: Vec<_> = meshes.collect();
         let (sky, ground) = (*sky, *ground);
-        Ok(truth.lit_by(&Illumination { lights: &sources, sky, ground, sections: &sections, meshes: &meshes })?)
+        let lights = &sources;
+        Ok(truth.lit_by(&Illumination { lights, sky, ground, sections: &sections, meshes: &meshes, shadows })?)
     }
 }
 

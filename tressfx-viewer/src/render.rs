@@ -17,9 +17,6 @@ use crate::{hair_output, passes, reference};
 /// Simulates all frames and draws those that are wanted.
 pub(crate) fn run(args: &Render) -> Result<()> {
     let mut output = Output::new(&args.out)?;
-    if args.reference && output.wants_every_frame() {
-        bail!("{}: --reference draws one picture, a .png of the last frame", args.out.display());
-    }
     if args.from >= Run::frames(&args.scene) {
         bail!("--from {}: frames are from 0 to {}", args.from, Run::frames(&args.scene) - 1);
     }
@@ -33,9 +30,6 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         progress.advance();
     }
     drop(progress);
-    if args.reference {
-        output.push(frames - 1, reference::picture(&mut run, &mut studio, args)?)?;
-    }
     output.finish(args.scene.fps)?;
     hair_output::write(&mut run, &studio, args)?;
     run.report(&args.scene, studio.drawn)?;
@@ -62,12 +56,16 @@ fn check_whole(args: &Render, drawn: &RenderStats) -> Result<()> {
 /// Simulates a frame, and draws it if it is wanted.
 fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output, frame: u32) -> Result<()> {
     let last = frame + 1 == Run::frames(&args.scene);
-    let wanted = !args.reference && (last || (output.wants_every_frame() && frame >= args.from));
+    let asked = last || (output.wants_every_frame() && frame >= args.from);
+    let wanted = asked && !args.reference;
     // Times of one frame say little: whoever asks for figures gets every frame drawn.
     let measured = args.scene.stats.is_some() || args.scene.profile || args.scene.trace.is_some();
     let draw = wanted || (measured && !args.reference);
     let start = Instant::now();
     let mut list = run.step(&args.scene)?;
+    if args.light_turn != 0.0 {
+        studio.turn_lights((args.light_turn * frame as f32) % 360.0);
+    }
     let drawn = draw.then(|| studio.draw(&mut list, run.head(&args.scene), run.sim.pose())).transpose()?;
     let picture = wanted.then(|| list.read_texture(studio.targets.color));
     if args.scene.print_passes && last {
@@ -85,6 +83,9 @@ fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output,
             let bytes = if retake { studio.retake(run, &args.scene)? } else { run.fetch(picture)? };
             output.push(frame, developed(texels(&bytes).map(Vec4::truncate), args.size))?;
         }
+    }
+    if asked && args.reference {
+        output.push(frame, reference::picture(run, studio, args)?)?;
     }
     Ok(())
 }

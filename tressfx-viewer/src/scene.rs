@@ -162,9 +162,7 @@ impl ScenePass {
         assert_eq!(view.depth(), self.order, "the order of depth of the view and of the scene pass");
         list.upload(self.view, 0, &[ViewUniform::new(view, lights)]);
         list.upload(self.gradient, 0, &[backdrop.uniform(view)]);
-        for draw in *meshes {
-            list.upload(draw.mesh.uniform, 0, &[draw.uniform()]);
-        }
+        meshes.iter().for_each(|mesh| mesh.upload(list));
         let mut pass = RasterPass::new(LABEL)
             .color(targets.color, Load::Clear(backdrop.edge.extend(1.0).to_array()))
             .depth(targets.depth, Load::Clear(self.order.far()));
@@ -218,6 +216,12 @@ impl SceneMesh {
         ]
     }
 
+    /// Whether a buffer holds where it is moved to.
+    #[cfg(test)]
+    pub(crate) fn is_placed_by(&self, buffer: BufferId) -> bool {
+        self.uniform == buffer
+    }
+
     /// Frees it.
     pub fn destroy(self, backend: &mut dyn Backend) {
         [self.vertices, self.indices, self.uniform].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
@@ -225,6 +229,11 @@ impl SceneMesh {
 }
 
 impl MeshDraw<'_> {
+    /// What passes that draw it read: it has to come before each of them in a list.
+    pub(crate) fn upload(&self, list: &mut PassList) {
+        list.upload(self.mesh.uniform, 0, &[self.uniform()]);
+    }
+
     fn uniform(&self) -> uniform::Surface {
         let Surface { color, rim, gloss, exponent, softness } = self.surface;
         uniform::Surface {

@@ -1,13 +1,14 @@
 //! Where pictures are taken: targets, lights, backdrop, the mesh that hair grows on, and the renderer.
 
 use anyhow::Result;
+use glam::Quat;
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
-    Counters, HAIR_FORMAT, HairRenderer, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo,
-    Targets, Technique, VELOCITY_FORMAT, ViewDraw,
+    Counters, HAIR_FORMAT, HairRenderer, LightPlace, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands,
+    StrandInfo, Targets, Technique, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
@@ -67,7 +68,9 @@ impl Studio {
             sections.push((section, material(args, *run.params.material(index))));
         }
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
-        let desc = desc.shadows(args.shadows.desc()).velocity_output(velocity_output).own_colors(own_colors);
+        // Where nothing opaque is drawn, nothing that is not seen keeps light away.
+        let shadows = args.shadows.desc().map(|shadows| shadows.skin(!opaque.is_empty()));
+        let desc = desc.shadows(shadows).velocity_output(velocity_output).own_colors(own_colors);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
@@ -78,6 +81,17 @@ impl Studio {
         Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer, lod })
     }
 
+    /// Turns the lights to so many degrees about the vertical axis from where they stand.
+    pub(crate) fn turn_lights(&mut self, degrees: f32) {
+        let turn = Quat::from_rotation_y(degrees.to_radians());
+        self.lights = studio_lights();
+        for light in &mut self.lights.lights {
+            if let LightPlace::Directional { towards } = &mut light.place {
+                *towards = turn * *towards;
+            }
+        }
+    }
+
     /// Records a picture with the head at `head`; `pose` takes the strands to the world, see `HairSim::pose`.
     pub(crate) fn draw(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Ticket> {
         let lights = self.draw_scene(list, head, pose)?;
@@ -86,11 +100,11 @@ impl Studio {
 
     /// Records the shadows and what is opaque. Gives the lights with what they see of it.
     pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
-        let lights = self.light_depth.draw(list, &self.lights, &self.meshes, head)?;
-        let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
-        self.renderer.cast(list, &lights, &sections)?;
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
+        let lights = self.light_depth.draw(list, &self.lights, &meshes, head)?;
+        let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
+        self.renderer.cast(list, &lights, &sections)?;
         let shadows = self.renderer.shadow_bindings();
         let Self { view, targets, scene, .. } = self;
         let opaque = Scene { backdrop: Backdrop::default(), meshes: &meshes, shadows: &shadows };

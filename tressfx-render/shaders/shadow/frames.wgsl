@@ -25,11 +25,11 @@ struct ShadowFrameUniform {
 }
 
 struct ShadowUniform {
-    lights: array<LightUniform, 8>,
-    // The sky's and one for each light.
+    lights: array<LightUniform, 16>,
+    // The sky's, and those of lights.
     frames: array<ShadowFrameUniform, 9>,
     // The frame of each light, `BY_SKY` or `OPEN`, four to a vector.
-    of_light: array<vec4<u32>, 2>,
+    of_light: array<vec4<u32>, 4>,
     // Frames from `first` to before `end` are in use.
     first: u32,
     end: u32,

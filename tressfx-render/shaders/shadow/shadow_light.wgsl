@@ -1,5 +1,6 @@
-// What arrives at each strand vertex of the sky and of each light. One thread a vertex.
+// What arrives at each strand vertex of the sky and of the first eight lights. One thread a vertex.
 
+import package::view::STORED_LIGHTS;
 import package::grid::{GROUP, thread_index};
 import package::hair_shadow::{hair_light, hair_sky};
 import package::ribbon::is_sound;
@@ -23,7 +24,7 @@ fn shadow_light(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
     let point = (section.pose * vec4(select(vec3(0.0), local, is_sound(local)), 1.0)).xyz;
     let open = hair_sky(point);
     var roots = array<vec4<f32>, 2>();
-    for (var light = 0u; light < 8u; light++) {
+    for (var light = 0u; light < STORED_LIGHTS; light++) {
         roots[light / 4u][light % 4u] = sqrt(hair_light(light, point, open));
     }
     let lights = vec2(pack4x8unorm(roots[0]), pack4x8unorm(roots[1]));

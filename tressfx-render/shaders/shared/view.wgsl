@@ -1,6 +1,8 @@
 // A view and its lights: what every pass over it knows.
 
-const MAX_LIGHTS: u32 = 8u;
+const MAX_LIGHTS: u32 = 16u;
+// Of so many, the first ones, it is stored at each vertex how much arrives.
+const STORED_LIGHTS: u32 = 8u;
 
 struct LightUniform {
     // Unit direction towards the light and 0, or position of a point light and 1.
@@ -43,8 +45,9 @@ struct ViewUniform {
     offset: vec2<u32>,
     target_size: vec2<u32>,
     light_count: u32,
-    unused: u32,
-    lights: array<LightUniform, 8>,
+    // A bit for each light that casts shadows.
+    casting: u32,
+    lights: array<LightUniform, 16>,
 }
 
 // Unit direction from a point towards a light, and in w how much of its radiance arrives.

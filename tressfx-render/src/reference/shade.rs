@@ -111,11 +111,20 @@ fn lit(
     let (mean, slope) = (0.5 * (sky + ground), 0.5 * (sky - ground));
     let around = mean.lerp(arriving.sky.w * mean + arriving.sky.y / 3.0 * slope, self_shadow).max(DVec3::ZERO);
     let of_sky = around * fibre.under_sky(eye, 1.0 + self_shadow * (arriving.sky.w - 1.0), alpha);
-    lights.lights.iter().zip(arriving.lights).fold(of_sky, |sum, (light, share)| {
+    lights.lights.iter().enumerate().fold(of_sky, |sum, (index, light)| {
         let (towards, strength) = towards(light, point);
-        let share = 1.0 + self_shadow * (share - 1.0);
+        let share = 1.0 + self_shadow * (share_of(arriving, index, light, towards) - 1.0);
         sum + light.color.as_dvec3() * strength * fibre.scatter(eye, towards, share, alpha)
     })
+}
+
+/// How much of a light arrives: as it is stored, or of what arrives from everywhere, from its direction.
+fn share_of(arriving: &Arriving, index: usize, light: &Light, towards: DVec3) -> f64 {
+    match arriving.lights.get(index) {
+        Some(&share) => share,
+        None if light.casts => (arriving.sky.w + arriving.sky.truncate().dot(towards)).clamp(0.0, 1.0),
+        None => 1.0,
+    }
 }
 
 pub(super) fn towards(light: &Light, point: DVec3) -> (DVec3, f64) {

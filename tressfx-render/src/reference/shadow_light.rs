@@ -5,7 +5,7 @@ use glam::{DVec3, DVec4};
 use super::shade::towards;
 use super::shadow::{BY_SKY, Grid, OPEN, ShadowCells, in_frame};
 use super::{Arriving, Strands, shadow_bounds, shadow_sky, shadow_splat, shadow_sum};
-use crate::lights::{Lights, MAX_LIGHTS};
+use crate::lights::{Lights, STORED_LIGHTS};
 use crate::uniforms::ShadowUniform;
 
 /// What the kernels before it have found.
@@ -33,7 +33,7 @@ impl<'a> Shadows<'a> {
     }
 }
 
-/// What arrives at a point of the sky and of each light.
+/// What arrives at a point of the sky and of the first lights.
 pub fn shadow_light(shadows: &Shadows, point: DVec3) -> Arriving {
     let Shadows { shadow, lights, sky, .. } = shadows;
     let sky = sky.as_ref().map_or(DVec4::W, |(grid, cells)| sky_at(grid, cells, in_frame(&shadow.frames[0], point)));
@@ -42,7 +42,7 @@ pub fn shadow_light(shadows: &Shadows, point: DVec3) -> Arriving {
         BY_SKY => (sky.w + sky.truncate().dot(towards(&lights.lights[light], point).0)).clamp(0.0, 1.0),
         frame => light_at(shadows, frame as usize, point),
     };
-    Arriving { sky, lights: std::array::from_fn::<f64, MAX_LIGHTS, _>(share) }
+    Arriving { sky, lights: std::array::from_fn::<f64, STORED_LIGHTS, _>(share) }
 }
 
 /// Between the middles of eight cells.

@@ -4,12 +4,12 @@ use glam::{Mat3, Mat4, Vec3};
 use tressfx_core::gpu_struct;
 
 use super::ShadowDesc;
-use crate::lights::{Light, LightPlace, Lights, MAX_LIGHTS};
+use crate::lights::{Light, LightPlace, Lights, MAX_LIGHTS, STORED_LIGHTS};
 use crate::strands::SectionDraw;
 use crate::uniforms::LightUniform;
 
 /// The sky's frame and those of lights.
-const FRAMES: usize = MAX_LIGHTS + 1;
+const FRAMES: usize = STORED_LIGHTS + 1;
 
 /// Kinds of frames, as in `frames.wgsl`.
 const SKY: u32 = 0;
@@ -36,7 +36,7 @@ gpu_struct! {
         pub kind: u32,
         /// Nearer to a point light than this nothing is told apart.
         pub nearest: f32,
-        /// 1 where skin is behind roots, 0 where the opaque scene is known.
+        /// 1 where skin is behind roots, 0 where there is none, or the opaque scene is known.
         pub has_skin: u32,
         /// Nothing.
         pub unused: u32,
@@ -51,7 +51,7 @@ gpu_struct! {
         /// The sky's, then those of lights.
         pub frames: [ShadowFrameUniform; FRAMES],
         /// The frame of each light; 0 where it is taken from the sky's, all bits where nothing shades it.
-        pub of_light: [[u32; 4]; 2],
+        pub of_light: [[u32; 4]; MAX_LIGHTS / 4],
         /// The first frame in use.
         pub first: u32,
         /// One more than the last.
@@ -79,7 +79,7 @@ impl ShadowUniform {
         let mut uniform = Self {
             lights: LightUniform::all(lights),
             frames: [none; FRAMES],
-            of_light: [[OPEN; 4]; 2],
+            of_light: [[OPEN; 4]; MAX_LIGHTS / 4],
             first: 0,
             end: 1,
             samples: desc.samples,
@@ -90,12 +90,13 @@ impl ShadowUniform {
         }
         let sphere = sphere_of(draws);
         for (index, light) in lights.lights.iter().take(MAX_LIGHTS).enumerate().filter(|(_, light)| light.casts) {
-            let seen = axes_of(light, sphere).filter(|_| uniform.end <= desc.lights);
+            let has_room = index < STORED_LIGHTS && uniform.end <= desc.lights;
+            let seen = axes_of(light, sphere).filter(|_| has_room);
             uniform.of_light[index / 4][index % 4] = match seen {
                 None => BY_SKY,
                 Some((axes, kind, nearest)) => {
                     let seen = frame(desc, uniform.end, axes, kind, nearest);
-                    let has_skin = u32::from(light.opaque.is_none());
+                    let has_skin = u32::from(desc.skin && light.opaque.is_none());
                     uniform.frames[uniform.end as usize] = ShadowFrameUniform { has_skin, ..seen };
                     uniform.end += 1;
                     uniform.end - 1
@@ -117,7 +118,15 @@ fn frame(desc: &ShadowDesc, index: u32, axes: Mat4, kind: u32, nearest: f32) -> 
             ([desc.texels, desc.texels, desc.layers], first as u32)
         }
     };
-    ShadowFrameUniform { axes: axes.to_cols_array_2d(), size, first, kind, nearest, has_skin: 1, unused: 0 }
+    ShadowFrameUniform {
+        axes: axes.to_cols_array_2d(),
+        size,
+        first,
+        kind,
+        nearest,
+        has_skin: u32::from(desc.skin),
+        unused: 0,
+    }
 }
 
 /// The middle of all hair in its rest pose, and the distance of what is farthest from it.

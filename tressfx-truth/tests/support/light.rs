@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use tressfx_core::view::{Pose, View};
-use tressfx_truth::{Illumination, Light, LitSection, OpaqueMesh, Picture, Truth, TruthError};
+use tressfx_truth::{Illumination, Light, LitSection, OpaqueMesh, Picture, ShadowMethod, Truth, TruthError};
 
 use super::{Hair, samples};
 
@@ -24,6 +24,7 @@ pub(crate) struct Lamps {
     pub(crate) ground: Vec3,
     pub(crate) triangles: Vec<Vec3>,
     pub(crate) pose: Pose,
+    pub(crate) shadows: ShadowMethod,
 }
 
 impl LitHair {
@@ -61,6 +62,7 @@ pub(crate) fn lit(view: &View, hair: &[&LitHair], lamps: &Lamps) -> Result<Truth
         ground: lamps.ground,
         sections: &lights,
         meshes: &[mesh],
+        shadows: lamps.shadows,
     };
     Truth::new(view, &sections, None)?.lit_by(&light)
 }
