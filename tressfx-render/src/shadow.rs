@@ -49,6 +49,11 @@ pub struct ShadowDesc {
     pub skin: bool,
 }
 
+/// Cells that are left however small a groom is seen.
+const LEAST_TEXELS: u32 = 32;
+const LEAST_LAYERS: u32 = 12;
+const LEAST_CELLS: u32 = 8;
+
 impl Default for ShadowDesc {
     /// Three lights with 192 x 192 x 48 cells, 21 MB, 32 cells along the longest side of the groom, and skin behind roots.
     fn default() -> Self {
@@ -85,6 +90,16 @@ impl ShadowDesc {
     #[must_use]
     pub fn skin(self, skin: bool) -> Self {
         Self { skin, ..self }
+    }
+
+    /// The cells for what is drawn of these: where fewer strands are, since they are seen from further away, cells are larger. Their number falls in
+    /// steps of the root of two, so that it seldom changes.
+    pub(crate) fn coarser(&self, draws: &[SectionDraw]) -> Self {
+        let share = draws.iter().map(|draw| draw.lod.share).fold(f32::MIN_POSITIVE, f32::max);
+        let scale = (-0.5 * (-share.log2()).floor()).exp2();
+        let scaled = |cells: u32, least: u32| ((cells as f32 * scale).round() as u32).max(least.min(cells));
+        let (texels, layers) = (scaled(self.texels, LEAST_TEXELS), scaled(self.layers, LEAST_LAYERS));
+        Self { texels, layers, cells: scaled(self.cells, LEAST_CELLS), ..*self }
     }
 
     fn check(&self) -> Result<()> {
@@ -198,8 +213,9 @@ impl Shadows {
         if uniform.first == uniform.end {
             return Ok(false);
         }
-        self.count(list, set, draws)?;
-        let Self { desc, kernels, memory } = self;
+        let desc = self.desc.coarser(draws);
+        self.count(list, set, &desc, draws)?;
+        let Self { kernels, memory, .. } = self;
         if uniform.end > 1 {
             let rows = (uniform.end - 1) * desc.texels * desc.texels;
             kernels.sum(list, set, memory, Grid::for_threads(rows, GROUP))?;
@@ -215,10 +231,10 @@ impl Shadows {
     }
 
     /// Counts what hair takes in each cell.
-    fn count(&mut self, list: &mut PassList, set: usize, draws: &[SectionDraw]) -> Result<()> {
-        let Self { desc, kernels, memory } = self;
+    fn count(&mut self, list: &mut PassList, set: usize, desc: &ShadowDesc, draws: &[SectionDraw]) -> Result<()> {
+        let Self { kernels, memory, .. } = self;
         list.clear(memory.bounds, 0, BOUNDS_BYTES);
-        list.clear(memory.cells, 0, 4 * memory.cell_count);
+        list.clear(memory.cells, 0, 4 * cells_of_all(desc));
         draws.iter().try_for_each(|draw| kernels.bounds(list, set, draw, memory, desc))?;
         draws.iter().try_for_each(|draw| kernels.splat(list, set, draw, memory, desc))
     }

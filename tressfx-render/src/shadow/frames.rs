@@ -75,6 +75,7 @@ fn cells_of_light(desc: &ShadowDesc) -> u64 {
 impl ShadowUniform {
     /// The frames of the lights that cast, as many as there is room for.
     pub fn new(desc: &ShadowDesc, lights: &Lights, draws: &[SectionDraw]) -> Self {
+        let desc = &desc.coarser(draws);
         let none = frame(desc, 0, Mat4::IDENTITY, SKY, 0.0);
         let mut uniform = Self {
             lights: LightUniform::all(lights),
