@@ -191,7 +191,7 @@ pub(crate) struct Render {
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,
-    /// Draw the last frame with the reference renderer: rays through fibres as solids, on the CPU
+    /// Draw with the reference renderer: rays through fibres as solids, on the CPU
     #[arg(long)]
     pub(crate) reference: bool,
     /// Rays a pixel of the reference renderer

@@ -301,7 +301,7 @@ fn the_reference_draws_the_same_frame() {
     let differing = compared["differing_share"].as_f64().unwrap();
     assert!(differing > 0.001 && differing < 0.5, "by another method: {compared}");
     let refused = |extra: &[&str]| fails(&folder, &[&["render"], &SMALL[..], extra].concat()).0;
-    assert!(refused(&["--out", "c.gif", "--reference"]).contains(".png of the last frame"));
+    assert!(refused(&["--out", "c.png", "--fibre-spacing", "4"]).contains("--reference"));
     assert!(refused(&["--out", "c.png", "--samples", "4"]).contains("--reference"));
     assert!(refused(&["--out", "c.png", "--reference-light", "given"]).contains("--reference"));
     assert!(refused(&["--out", "c.png", "--reference", "--samples", "0"]).contains("--samples"));
@@ -332,8 +332,24 @@ fn the_reference_traces_light() {
         serde_json::from_str(&passes(&folder, &["compare", "given.png", "open.png", "--json"])).unwrap();
     assert!(compared["psnr_db"].as_f64().unwrap() > 35.0, "{compared}");
     assert!(bright("traced.png") < bright("open.png"), "hair shades hair");
+    // Another method in its place: strands shade, without rays, the more the nearer they are taken to be.
+    let nearest =
+        |name: &str, spacing| shadow_rays(name, &["--reference-light", "nearest", "--fibre-spacing", spacing]);
+    assert_eq!([nearest("dense", "0.4"), nearest("thin", "1e9")], [0, 0]);
+    assert!(bright("dense.png") < bright("thin.png") && bright("thin.png") < bright("open.png"));
+    assert_eq!(
+        shadow_rays("turned", &["--light-turn", "90"]),
+        shadow_rays("traced", &[]),
+        "the first frame has not turned"
+    );
+    assert_eq!(bright("turned.png"), bright("traced.png"));
     assert_eq!(shadow_rays("again", &[]), shadow_rays("traced", &[]));
     assert_eq!(bright("again.png"), bright("traced.png"));
+    // Every frame where that is asked for, in light that turns.
+    let film =
+        ["--frames", "3", "--size", "160x90", "--reference", "--samples", "2", "--light-turn", "90", "--out", "film/"];
+    passes(&folder, &[&["render", "builtin:curly:300:24"], &film[..]].concat());
+    assert!(bright("film/0000.png") > 0.0 && bright("film/0000.png") != bright("film/0002.png"));
 }
 
 #[test]
