@@ -62,6 +62,7 @@ struct Groom {
 const GROOMS: &[Groom] = &[
     Groom { name: "curly", file: "builtin:curly", is_real: false, is_lit: true },
     Groom { name: "fur", file: "builtin:fur", is_real: false, is_lit: true },
+    Groom { name: "animal", file: "builtin:animal", is_real: false, is_lit: true },
     Groom { name: "long", file: "builtin:long", is_real: false, is_lit: true },
     Groom { name: "dense", file: "builtin:long:131072:32", is_real: false, is_lit: false },
     Groom { name: "mohawk", file: "tressfx41_ratboy/Ratboy_mohawk.tfx", is_real: true, is_lit: true },
