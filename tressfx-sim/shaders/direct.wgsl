@@ -32,6 +32,10 @@ const TOUCHING_ROUNDS: u32 = 4u;
 const MOST_ROUNDS: u32 = 8u;
 const SETTLED: f32 = 1e-5;
 
+/// The share of what the spring of a pinned tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
+/// that is pulled taut swings to and fro without end.
+const TAKEN_UP: f32 = 0.125;
+
 @compute @workgroup_size(GROUP)
 fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
           @builtin(local_invocation_index) lane: u32) {
@@ -153,7 +157,7 @@ fn finish(strand: Strand, round: Round) {
     }
     var aimed = round.aimed;
     if (!calm && strand.has_past) { aimed = aim_again(strand); }
-    keep_hold(strand, round.place);
+    keep_hold(strand, round.place, calm);
     store_strains(strand, true);
     let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);
     let last_length = rods[slot(strand, 0u, LENGTHS)].x;
@@ -176,11 +180,11 @@ fn store_strains(strand: Strand, keep: bool) {
     }
 }
 
-/// The force that a pinned tip has come to takes up what the spring leaves; `place` is from the root.
-fn keep_hold(strand: Strand, place: vec3<f32>) {
+/// The force that a pinned tip has come to takes up some of what the spring leaves; `place` is from the root. Where the rounds have not come to
+/// their end, what is left says nothing of the force.
+fn keep_hold(strand: Strand, place: vec3<f32>, calm: bool) {
     @if(pinned_tips) {
-        let length = rest_before(strand, strand.edges).w;
-        let more = hold_stiffness(strand, length) * (hold_place(strand) - strand.root_now - place);
-        rods[slot(strand, 0u, HOLDING)] += vec4(more, 0.0);
+        let more = hold_stiffness(strand) * (hold_place(strand) - strand.root_now - place);
+        if (calm) { rods[slot(strand, 0u, HOLDING)] += vec4(TAKEN_UP * more, 0.0); }
     }
 }

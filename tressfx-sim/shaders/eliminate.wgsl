@@ -18,7 +18,7 @@ import package::rod_contact::contacts_of;
 @if(contacts)
 import package::rod_touch::{Range, edge_between, is_in, last_touch, may_touch};
 
-/// How stiff the spring is that holds a pinned tip, over the mass of the tip.
+/// How stiff the spring is that holds a pinned tip, over the mass that hangs on it.
 const HOLD: f32 = 1e4;
 /// What holds an edge against a rotation about itself is never less than this share of all that holds it.
 const LEAST_TWIST: f32 = 1e-6;
@@ -101,7 +101,7 @@ fn eliminate(strand: Strand, begin: Begin) {
     var at = begin.place;
     var after_edge = pulled(strand, row, moving);
     let last = inertia(strand, tip, 0.5 * row.rest.w, after_edge, at, axis);
-    let spring = hold_stiffness(strand, row.rest.w);
+    let spring = hold_stiffness(strand);
     let hold = rods[slot(strand, 0u, HOLDING)].xyz;
     let gap = hold_place(strand) - strand.root_now - at;
     var place = sum(last.mass, scaled_identity(spring));
@@ -202,10 +202,10 @@ fn past_strain(strand: Strand, vertex: u32, strain: vec3<f32>) -> vec3<f32> {
     }
 }
 
-/// The stiffness of the spring that holds a pinned tip behind an edge of this length; 0 where the tip is free.
-fn hold_stiffness(strand: Strand, length: f32) -> f32 {
+/// The stiffness of the spring that holds a pinned tip; 0 where the tip is free.
+fn hold_stiffness(strand: Strand) -> f32 {
     @if(!pinned_tips) { return 0.0; }
-    @if(pinned_tips) { return strand.tip_pinned * HOLD * 0.5 * length; }
+    @if(pinned_tips) { return HOLD * strand.tip_mass; }
 }
 
 /// Where a pinned tip is held.

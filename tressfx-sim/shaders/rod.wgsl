@@ -9,8 +9,8 @@ import package::wind::wind_of;
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
 /// Two for each vertex: half of the rotation that the joint before the edge to the next one wants, the fourth component of which
 /// follows from the others and gives way to the length of the edge; and the frame of that edge at rest. The tip has no such edge; its first
-/// has what the strand's bending is multiplied by, how many edges the root holds, the shortest length that bends, and 1 if the tip is
-/// pinned, its second the length of the strand.
+/// has what the strand's bending is multiplied by, how many edges the root holds, the shortest length that bends, and the mass
+/// that hangs on a pinned tip (0 on a free one), its second the length of the strand.
 @group(0) @binding(2) var<storage, read> rod_rest: array<vec4<f32>>;
 /// `SLOTS` for each vertex: what belongs to it and to the edge before it. The strands of a group are beside each other.
 @group(0) @binding(3) var<storage, read_write> rods: array<vec4<f32>>;
@@ -60,8 +60,8 @@ struct Strand {
     shortest_span: f32,
     mass_correction: f32,
     wind: vec3<f32>,
-    /// 1 where the tip is pinned.
-    tip_pinned: f32,
+    /// The mass that hangs on a pinned tip; 0 on a free one.
+    tip_mass: f32,
     /// Whether the past counts: not after a reset, after a change of the sub-step, or after an edge turned too fast; and whether it
     /// did one sub-step ago.
     has_past: bool,
@@ -120,7 +120,7 @@ fn strand_of(guide: u32) -> Strand {
     strand.wind = wind_of(guide);
     strand.has_past = has_past;
     strand.had_past = marks.had_past;
-    strand.tip_pinned = tip.w;
+    strand.tip_mass = tip.w;
     strand.length = select(step.length, step.length * (2.0 / 3.0), has_past);
     strand.fall = step.gravity * select(1.0, 4.0 / 9.0, has_past);
     strand.past = select(0.0, 1.0 / 3.0, has_past);

@@ -36,8 +36,8 @@ const AT_ONCE: usize = 4096;
 pub(crate) struct GpuRods {
     /// `(2 * vertex + entry) * guides + guide`: half of the rotation that the joint before the edge wants, the fourth component of
     /// which gives way to the edge's length, and the edge's frame at rest. The tip has no edge; it has what the strand's bending is
-    /// multiplied by, how many edges the root holds, the shortest length that bends, and 1 if the tip is pinned, and then the length of
-    /// the strand.
+    /// multiplied by, how many edges the root holds, the shortest length that bends, and the mass that hangs on a pinned tip (0 on a free
+    /// one), and then the length of the strand.
     pub(crate) entries: Vec<Vec4>,
     pub(crate) standing: Standing,
 }
@@ -62,8 +62,8 @@ impl GpuRods {
                 }
                 let pinned = rest.held + 1 < vertices && strands.rest[(guide + 1) * vertices - 1].w == 0.0;
                 let shortest = rest.spans.iter().copied().fold(f64::INFINITY, f64::min);
-                let pinned = if pinned { 1.0 } else { 0.0 };
-                set(vertices - 1, 0, Vec4::new(rest.stiffening as f32, rest.held as f32, shortest as f32, pinned));
+                let hung = if pinned { rest.tip_mass() as f32 } else { 0.0 };
+                set(vertices - 1, 0, Vec4::new(rest.stiffening as f32, rest.held as f32, shortest as f32, hung));
                 // Rounded up: it is a bound.
                 set(vertices - 1, 1, Vec4::X * (rest.lengths.iter().sum::<f64>() as f32).next_up());
             }

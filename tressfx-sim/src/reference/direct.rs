@@ -32,6 +32,9 @@ const ANOTHER_ROUND: f64 = 2.0;
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
 const SHORT: f64 = 1.0 / 120.0;
+/// The share of what the spring of a held tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
+/// that is pulled taut swings to and fro without end.
+const TAKEN_UP: f64 = 0.125;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: the direction that it would get is no
 /// guess at all. With half of the length fast bars go through strands that they push.
 const NO_AIM: f64 = 2.0;
@@ -320,13 +323,15 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
             false => displacement / step.length,
         };
     }
-    rod.holding = match step.tip {
+    match step.tip {
+        None => rod.holding = DVec3::ZERO,
+        // Where the rounds have not come to their end, what is left says nothing of the force.
+        Some(_) if !calm => {}
         Some(hold) => {
             let error = hold.place - rod.positions[motion.before.len() - 1];
-            rod.holding + newton::hold_stiffness(motion.rest) * error
+            rod.holding += TAKEN_UP * newton::hold_stiffness(motion.rest) * error;
         }
-        None => DVec3::ZERO,
-    };
+    }
     let strains = rod.strains_now(motion.rest, step.root);
     rod.last_strains = std::mem::replace(&mut rod.strains, strains);
     rod.has_past = calm;

@@ -5,7 +5,8 @@ use glam::{DMat3, DQuat, DVec3};
 use super::joint::{Joint, Stiffness};
 use super::{Motion, Rod, RodRest, outer};
 
-/// How stiff the spring is that holds a tip: its stiffness times the square of the sub-step, over the mass of the tip.
+/// How stiff the spring is that holds a tip: its stiffness times the square of the sub-step, over the mass that it holds, see
+/// [`RodRest::tip_mass`].
 const HOLD: f64 = 1e4;
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f64 = 1.5;
@@ -82,7 +83,7 @@ fn at_tip(motion: &Motion, rod: &Rod) -> Beyond {
 
 /// The stiffness of the spring that holds a tip, times the square of the sub-step.
 pub(super) fn hold_stiffness(rest: &RodRest) -> f64 {
-    HOLD * rest.masses.last().copied().unwrap_or(0.0)
+    HOLD * rest.tip_mass()
 }
 
 /// Takes an edge out of the system, and gives the vertex before it and its parent what the edge and all beyond want of them.

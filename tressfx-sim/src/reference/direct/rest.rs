@@ -54,6 +54,13 @@ impl RodRest {
         }
     }
 
+    /// The mass that hangs on a held tip: that of the tip were all edges as long as the longest. With the tip's own, a spring behind a last
+    /// edge that is much shorter than others is soft beside what pulls at it, and the force that it comes to swings to and fro, more and more.
+    #[must_use]
+    pub fn tip_mass(&self) -> f64 {
+        self.lengths.iter().copied().fold(0.0, f64::max) / 2.0
+    }
+
     /// The share of the difference between masses at vertices and masses along edges that is made good. With all of it (1)
     /// short waves run too fast, with none too slow; the formula in time makes them slower too. Of the shares that were tried this
     /// one has the smallest error in the first three modes of a hanging strand, for 8 to 64 vertices at 1/120 s. A single edge is
