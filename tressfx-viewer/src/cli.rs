@@ -11,6 +11,7 @@ use tressfx_render::Look;
 use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
+use crate::develop::Develop;
 use crate::lod::Lod;
 use crate::oit::Oit;
 use crate::shadows::Shadows;
@@ -160,6 +161,8 @@ pub(crate) struct Render {
     pub(crate) shadows: Shadows,
     #[command(flatten)]
     pub(crate) lod: Lod,
+    #[command(flatten)]
+    pub(crate) develop: Develop,
     /// The colour of the hair, with fibres that scatter light as glass; it replaces what the parameters say
     #[arg(long, value_name = "NAME", value_parser = looks())]
     pub(crate) look: Option<Look>,
@@ -188,6 +191,9 @@ pub(crate) struct Render {
     /// middle gray; what the largest motion is is printed
     #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
     pub(crate) velocity_out: Option<PathBuf>,
+    /// Write the linear light of the last frame too, before exposure and tone mapping
+    #[arg(long, value_name = "FILE.exr", value_parser = exr)]
+    pub(crate) linear_out: Option<PathBuf>,
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,
@@ -392,6 +398,12 @@ fn png(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
     if is_png { Ok(path) } else { Err("the ending must be .png".to_owned()) }
+}
+
+fn exr(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_exr = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    if is_exr { Ok(path) } else { Err("the ending must be .exr".to_owned()) }
 }
 
 fn fps(text: &str) -> Result<f64, String> {

@@ -1,7 +1,7 @@
 //! `viewer.light_depth`: what the lights of the studio see of the opaque meshes, for their shadows on hair.
 
+use glam::Vec3;
 use glam::camera::rh;
-use glam::{Mat4, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, Depth, DepthOrder, Format, RasterDesc, TextureDesc};
 use tressfx_core::error::{Label, Result};
@@ -12,7 +12,7 @@ use tressfx_core::strands::Bounds;
 use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::uniforms::ViewUniform;
-use tressfx_render::{Light, LightPlace, Lights, MAX_LIGHTS, OpaqueDepth, VIEW_MODULE};
+use tressfx_render::{Light, LightPlace, Lights, OpaqueDepth, STORED_LIGHTS, VIEW_MODULE};
 
 use crate::scene::MeshDraw;
 
@@ -24,7 +24,10 @@ const TEXELS: u32 = 1024;
 /// Texels that hair may be behind a surface and still be lit: its surface is flat between the texels.
 const BIAS: f32 = 2.0;
 
-/// The depth of the scene as each directional light sees it.
+/// A light at a point sees the meshes from this many times their radius on.
+const NEAREST: f32 = 1.1;
+
+/// The depth of the scene as each light sees it; a light among the meshes sees none.
 #[derive(Debug)]
 pub struct LightDepth {
     pipeline: RasterPipeline,
@@ -45,12 +48,12 @@ impl LightDepth {
         let shader = Shader::new(&source, &Specialization::new())?.into();
         let depth = Depth::TestWrite(DepthOrder::Standard);
         let desc = TextureDesc::new(LABEL, [TEXELS; 2], Format::Depth32F);
-        let casting = lights.lights.iter().filter(|light| way_of(light).is_some());
+        let casting = lights.lights.iter().take(STORED_LIGHTS).filter(|light| light.casts);
         let textures = if meshes.is_empty() { 0 } else { casting.count() };
         let bounds = Bounds::of(meshes.iter().flat_map(|mesh| &mesh.positions).copied());
         Ok(Self {
             pipeline: backend.create_raster(&RasterDesc::new(shader).depth(depth))?,
-            views: UniformArray::new(backend, LABEL, MAX_LIGHTS)?,
+            views: UniformArray::new(backend, LABEL, STORED_LIGHTS)?,
             textures: (0..textures).map(|_| backend.create_texture(&desc)).collect::<Result<_>>()?,
             sphere: (bounds.center(), 0.5 * (bounds.max - bounds.min).length()),
         })
@@ -63,9 +66,9 @@ impl LightDepth {
     pub fn draw(&self, list: &mut PassList, lights: &Lights, meshes: &[MeshDraw], head: Pose) -> Result<Lights> {
         let mut lit = lights.clone();
         meshes.iter().for_each(|mesh| mesh.upload(list));
-        let casting = lit.lights.iter_mut().filter_map(|light| Some((way_of(light)?, light)));
-        for (index, ((way, light), &depth)) in casting.zip(&self.textures).enumerate() {
-            let Some(view) = self.view(way, head) else { continue };
+        let casting = lit.lights.iter_mut().take(STORED_LIGHTS).filter(|light| light.casts);
+        for (index, (light, &depth)) in casting.zip(&self.textures).enumerate() {
+            let Some(view) = self.view(light, head) else { continue };
             self.views.upload(list, index, &[ViewUniform::new(&view, &Lights::default())]);
             let mut pass = RasterPass::new(LABEL).depth(depth, Load::Clear(DepthOrder::Standard.far()));
             for MeshDraw { mesh, .. } in meshes {
@@ -79,22 +82,28 @@ impl LightDepth {
         Ok(lit)
     }
 
-    /// From the direction of a light, around the meshes.
-    fn view(&self, way: Vec3, head: Pose) -> Option<View> {
+    /// From a light, around the meshes.
+    fn view(&self, light: &Light, head: Pose) -> Option<View> {
         let (middle, radius) = (head.transform(self.sphere.0), self.sphere.1);
+        let (eye, lens) = match light.place {
+            LightPlace::Directional { towards } => {
+                let reach = 1.01 * radius;
+                let lens = rh::proj::directx::orthographic(-reach, reach, -reach, reach, 0.5 * radius, 3.5 * radius);
+                (middle + 2.0 * radius * towards.try_normalize()?, lens)
+            }
+            LightPlace::Point { position, .. } => {
+                let distance = position.distance(middle);
+                // From nearer by, no flat picture has all of the meshes in it.
+                if distance < NEAREST * radius {
+                    return None;
+                }
+                let angle = 2.0 * (1.01 * radius / distance).asin();
+                (position, rh::proj::directx::perspective(angle, 1.0, distance - radius, distance + radius))
+            }
+        };
+        let way = (middle - eye).try_normalize()?;
         let up = if way.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
-        let to_light: Mat4 = rh::view::look_to_mat4(middle - 2.0 * radius * way, way, up);
-        let reach = 1.01 * radius;
-        let lens = rh::proj::directx::orthographic(-reach, reach, -reach, reach, 0.5 * radius, 3.5 * radius);
-        View::new(to_light, lens, DepthOrder::Standard, [TEXELS; 2]).ok()
-    }
-}
-
-/// The way of a light that casts from a direction.
-fn way_of(light: &Light) -> Option<Vec3> {
-    match light.place {
-        LightPlace::Directional { towards } if light.casts => (-towards).try_normalize(),
-        _ => None,
+        View::new(rh::view::look_to_mat4(eye, way, up), lens, DepthOrder::Standard, [TEXELS; 2]).ok()
     }
 }
 
@@ -112,12 +121,21 @@ mod tests {
         let mut backend = NullBackend::default();
         let ball = Mesh::ellipsoid(&Ellipsoid { center: Vec3::ZERO, radii: Vec3::ONE }, 8);
         let mesh = SceneMesh::new(&mut backend, &mut PassList::new(), &ball).unwrap();
-        let lights = studio_lights();
+        let mut lights = studio_lights();
+        lights.lights.push(Light::point(Vec3::Y * 3.0, 1.0, Vec3::ONE));
+        lights.lights.push(Light::point(Vec3::Y * 0.5, 1.0, Vec3::ONE));
         let depth = LightDepth::new(&mut backend, &lights, &[ball]).unwrap();
         let mut list = PassList::new();
         let meshes = [MeshDraw { mesh: &mesh, surface: Surface::default(), pose: Pose::IDENTITY }];
         let lit = depth.draw(&mut list, &lights, &meshes, Pose::IDENTITY).unwrap();
-        assert!(lit.lights.iter().all(|light| light.opaque.is_some()));
+        let seen: Vec<_> = lit.lights.iter().map(|light| light.opaque.is_some()).collect();
+        assert_eq!(seen, [true, true, true, true, false], "the last one is inside of the ball");
+        let view = lit.lights[3].opaque.unwrap().view;
+        let clip = view.view_projection() * Vec3::new(0.0, 1.0, 0.0).extend(1.0);
+        assert!(
+            (clip.truncate() / clip.w).truncate().length() < 1e-5,
+            "what is below the light is in its middle: {clip}"
+        );
         let first = list.commands().iter().position(Command::is_pass).unwrap();
         let is_place = |command: &Command| matches!(command, Command::Upload { dst, .. } if mesh.is_placed_by(*dst));
         assert!(list.commands()[..first].iter().any(is_place), "the place of the mesh comes before what draws it");

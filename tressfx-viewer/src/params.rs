@@ -5,8 +5,10 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use tressfx_core::shape::Capsule;
-use tressfx_render::Material;
+use tressfx_render::{Lights, Material};
 use tressfx_sim::{ClockParams, SimParams, Wind};
+
+use crate::light_params::{self, LightParams, SkyParams};
 
 /// The file. Whatever is left out has its default.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -22,6 +24,10 @@ pub(crate) struct Params {
     pub(crate) wind: Option<Wind>,
     /// What hair collides with, beside what a built-in groom brings: in the space and the unit of the groom.
     pub(crate) capsule: Vec<Capsule>,
+    /// The light from everywhere; with `light` in the place of that of the studio.
+    sky: Option<SkyParams>,
+    /// Single lights.
+    light: Vec<LightParams>,
     /// What is different in single sections, in the order of the grooms.
     section: Vec<SectionParams>,
 }
@@ -54,11 +60,17 @@ impl Params {
         if let Some(wind) = &params.wind {
             wind.validate()?;
         }
+        params.lights()?;
         for section in 0..sections {
             params.sim(section).validate()?;
             params.material(section).validate()?;
         }
         Ok(params)
+    }
+
+    /// The light; none where the file says nothing of it.
+    pub(crate) fn lights(&self) -> Result<Option<Lights>> {
+        light_params::lights(self.sky.as_ref(), &self.light)
     }
 
     /// How the strands of a section move.

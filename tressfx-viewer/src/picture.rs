@@ -1,4 +1,4 @@
-//! From linear light on the GPU to files of pictures.
+//! Pictures from the GPU, and their files.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -8,30 +8,12 @@ use anyhow::{Context, Result, bail};
 use glam::{Vec3, Vec4};
 use half::f16;
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, Rgb, RgbImage, buffer::ConvertBuffer};
+use image::{Delay, Frame, Rgb32FImage, RgbImage, buffer::ConvertBuffer};
 
 /// Colours in a read-back of four half floats each.
 pub(crate) fn texels(bytes: &[u8]) -> impl Iterator<Item = Vec4> {
     let channel = |texel: &[u8], i: usize| f16::from_le_bytes([texel[2 * i], texel[2 * i + 1]]).to_f32();
     bytes.chunks_exact(8).map(move |texel| Vec4::from_array([0, 1, 2, 3].map(|i| channel(texel, i))))
-}
-
-/// Turns linear light, row by row, into a picture for a screen.
-pub(crate) fn developed(light: impl IntoIterator<Item = Vec3>, size: [u32; 2]) -> RgbImage {
-    let mut light = light.into_iter();
-    RgbImage::from_fn(size[0], size[1], |_, _| {
-        Rgb(light.next().expect("there is light for every pixel").to_array().map(encode))
-    })
-}
-
-/// The sRGB transfer function (IEC 61966-2-1) in 8 bits. Light above 0.8 is rolled off towards white, so that highlights
-/// keep their shape.
-fn encode(linear: f32) -> u8 {
-    const KNEE: f32 = 0.8;
-    let light = linear.max(0.0);
-    let light = if light > KNEE { KNEE + (1.0 - KNEE) * (1.0 - (-(light - KNEE) / (1.0 - KNEE)).exp()) } else { light };
-    let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
-    (encoded * 255.0 + 0.5) as u8
 }
 
 /// Where pictures go: `--out`.
@@ -105,6 +87,13 @@ impl Output {
     }
 }
 
+/// Writes linear light, row by row, as it is: an OpenEXR picture.
+pub(crate) fn write_linear(path: &Path, light: &[Vec3], size: [u32; 2]) -> Result<()> {
+    let channels = light.iter().flat_map(|light| light.to_array()).collect();
+    let picture = Rgb32FImage::from_raw(size[0], size[1], channels).expect("there is light for every pixel");
+    picture.save(path).with_context(|| path.display().to_string())
+}
+
 fn create(path: &Path) -> Result<BufWriter<File>> {
     Ok(BufWriter::new(File::create(path).with_context(|| path.display().to_string())?))
 }
@@ -145,26 +134,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_transfer_function_keeps_its_ends_and_its_order() {
-        assert_eq!(encode(0.0), 0);
-        assert_eq!(encode(-1.0), 0);
-        assert_eq!(encode(f32::NAN), 0);
-        assert_eq!(encode(0.5), 188, "sRGB of half the light");
-        assert_eq!(encode(1e6), 255);
-        let steps: Vec<u8> = (0..1000).map(|i| encode(i as f32 * 0.004)).collect();
-        assert!(steps.is_sorted());
-    }
-
-    #[test]
-    fn rows_and_channels_come_out_in_order() {
-        let texels: Vec<u8> = [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]]
-            .concat()
-            .into_iter()
-            .flat_map(|v| f16::from_f32(v).to_le_bytes())
-            .collect();
-        let picture = developed(super::texels(&texels).map(Vec4::truncate), [1, 2]);
-        assert!(picture[(0, 0)][0] > 230 && picture[(0, 0)][1] == 0);
-        assert!(picture[(0, 1)][1] > 230 && picture[(0, 1)][0] == 0);
+    fn channels_come_out_in_order() {
+        let bytes: Vec<u8> = [1.0, 0.5, 0.25, 2.0].into_iter().flat_map(|v| f16::from_f32(v).to_le_bytes()).collect();
+        assert_eq!(texels(&bytes).collect::<Vec<_>>(), [Vec4::new(1.0, 0.5, 0.25, 2.0)]);
     }
 
     #[test]

@@ -8,15 +8,14 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use glam::DVec3;
-use image::RgbImage;
+use glam::{DVec3, Vec3};
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_render::SectionDraw;
 use tressfx_truth::{Section, ShadowMethod, Truth};
 
 use crate::cli::{ReferenceLight, Render};
-use crate::picture::{developed, texels};
+use crate::picture::texels;
 use crate::reference_light::Unshaded;
 use crate::run::{Progress, Run};
 use crate::say::say;
@@ -39,8 +38,8 @@ struct Strands {
     thickness: Vec<f32>,
 }
 
-/// Draws the frame that was simulated last, and says how long it took and how exact it is.
-pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Result<RgbImage> {
+/// Draws the frame that was simulated last, and says how long it took and how exact it is. Gives its linear light, row by row.
+pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Result<Vec<Vec3>> {
     let mut list = PassList::new();
     let tickets = requests(&mut list, run, studio, args)?;
     run.submit(&list)?;
@@ -78,7 +77,7 @@ pub(crate) fn picture(run: &mut Run, studio: &mut Studio, args: &Render) -> Resu
     let ReferenceStats { samples, shadow_rays, seconds, .. } = stats;
     say(format_args!("reference: {samples} samples a pixel, {shadow_rays} rays towards light, {seconds:.1} s{error}"))?;
     studio.drawn.reference = Some(stats);
-    Ok(developed(picture.over(&scene).into_iter().map(|pixel| pixel.as_vec3()), args.size))
+    Ok(picture.over(&scene).into_iter().map(|pixel| pixel.as_vec3()).collect())
 }
 
 /// Records the scene, and behind its read-back the hair, for its colours.

@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use tressfx_asset::mesh::Mesh;
 
 use crate::cli::Render;
-use crate::picture::{Output, developed, texels};
+use crate::picture::{Output, texels, write_linear};
 use crate::run::{Progress, Run};
 use crate::say::say;
 use crate::stats::RenderStats;
@@ -81,11 +81,19 @@ fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output,
         let retake = studio.take_stock(run, counters)?;
         if let Some(picture) = picture {
             let bytes = if retake { studio.retake(run, &args.scene)? } else { run.fetch(picture)? };
-            output.push(frame, developed(texels(&bytes).map(Vec4::truncate), args.size))?;
+            keep(args, output, frame, &texels(&bytes).map(Vec4::truncate).collect::<Vec<_>>())?;
         }
     }
     if asked && args.reference {
-        output.push(frame, reference::picture(run, studio, args)?)?;
+        keep(args, output, frame, &reference::picture(run, studio, args)?)?;
     }
     Ok(())
+}
+
+/// Takes the linear light of a frame that is wanted.
+fn keep(args: &Render, output: &mut Output, frame: u32, light: &[Vec3]) -> Result<()> {
+    if let Some(path) = args.linear_out.as_ref().filter(|_| frame + 1 == Run::frames(&args.scene)) {
+        write_linear(path, light, args.size)?;
+    }
+    output.push(frame, args.develop.developed(light.iter().copied(), args.size))
 }

@@ -31,6 +31,8 @@ pub(crate) struct Studio {
     pub(crate) drawn: RenderStats,
     pub(crate) view: View,
     pub(crate) lights: Lights,
+    /// As they stand in the first frame.
+    first_lights: Lights,
     light_depth: LightDepth,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
@@ -75,19 +77,37 @@ impl Studio {
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;
         let scene = ScenePass::new(backend, TARGET, view.depth(), desc.shadows.is_some())?;
-        let (lights, drawn) = (studio_lights(), RenderStats::default());
+        let (lights, drawn) = (run.params.lights()?.unwrap_or_else(studio_lights), RenderStats::default());
+        let first_lights = lights.clone();
         let light_depth = LightDepth::new(backend, &lights, &opaque)?;
         backend.run(&uploads)?;
-        Ok(Self { targets, drawn, view, lights, light_depth, scene, meshes, opaque, sections, renderer, lod })
+        Ok(Self {
+            targets,
+            drawn,
+            view,
+            lights,
+            first_lights,
+            light_depth,
+            scene,
+            meshes,
+            opaque,
+            sections,
+            renderer,
+            lod,
+        })
     }
 
     /// Turns the lights to so many degrees about the vertical axis from where they stand.
     pub(crate) fn turn_lights(&mut self, degrees: f32) {
         let turn = Quat::from_rotation_y(degrees.to_radians());
-        self.lights = studio_lights();
+        self.lights.clone_from(&self.first_lights);
         for light in &mut self.lights.lights {
-            if let LightPlace::Directional { towards } = &mut light.place {
-                *towards = turn * *towards;
+            match &mut light.place {
+                LightPlace::Directional { towards } => *towards = turn * *towards,
+                LightPlace::Point { position, cone, .. } => {
+                    *position = turn * *position;
+                    cone.iter_mut().for_each(|cone| cone.along = turn * cone.along);
+                }
             }
         }
     }
