@@ -9,12 +9,27 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 19] = [
+const PICTURES: [(&str, &str); 31] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
     ("curly.png", "builtin:curly --frames 60 --size 960x540"),
     ("fur.png", "builtin:fur --wind 3,0,0 --frames 60 --size 960x540"),
+    (
+        "animal.png",
+        "builtin:animal --wind 2,0,1 --frames 60 --size 960x540 --camera 1.25,0.42,0.55,0,0.27,-0.06,30 --tone-map agx --exposure 0.7",
+    ),
+    ("beard.png", "builtin:beard --frames 30 --size 480x480"),
+    ("lod-1-all.png", "builtin:long --frames 0 --size 480x480 --camera 0,-0.17,1.2,0,-0.17,0,26.79"),
+    ("lod-2-all.png", "builtin:long --frames 0 --size 240x240 --camera 0,-0.17,2.4,0,-0.17,0,13.58"),
+    ("lod-3-all.png", "builtin:long --frames 0 --size 120x120 --camera 0,-0.17,4.8,0,-0.17,0,6.815"),
+    ("lod-4-all.png", "builtin:long --frames 0 --size 60x60 --camera 0,-0.17,9.6,0,-0.17,0,3.411"),
+    ("lod-5-all.png", "builtin:long --frames 0 --size 30x30 --camera 0,-0.17,19.2,0,-0.17,0,1.706"),
+    ("lod-1.png", "builtin:long --frames 0 --size 480x480 --camera 0,-0.17,1.2,0,-0.17,0,26.79 --lod"),
+    ("lod-2.png", "builtin:long --frames 0 --size 240x240 --camera 0,-0.17,2.4,0,-0.17,0,13.58 --lod"),
+    ("lod-3.png", "builtin:long --frames 0 --size 120x120 --camera 0,-0.17,4.8,0,-0.17,0,6.815 --lod"),
+    ("lod-4.png", "builtin:long --frames 0 --size 60x60 --camera 0,-0.17,9.6,0,-0.17,0,3.411 --lod"),
+    ("lod-5.png", "builtin:long --frames 0 --size 30x30 --camera 0,-0.17,19.2,0,-0.17,0,1.706 --lod"),
     ("preset-baby.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset baby"),
     ("preset-medium.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset medium"),
     ("preset-sprayed.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset sprayed"),
