@@ -7,6 +7,7 @@ mod animal;
 mod body;
 mod clumps;
 mod growth;
+mod ponytail;
 mod roots;
 mod style;
 
@@ -18,6 +19,7 @@ use thiserror::Error;
 
 use crate::mesh::Mesh;
 use body::Body;
+use ponytail::Tie;
 use style::Look;
 use tressfx_core::asset::{AssetFormat, HairAsset, MAX_VERTICES, MIN_VERTICES};
 use tressfx_core::shape::{Capsule, Ellipsoid};
@@ -42,12 +44,14 @@ pub enum Style {
     Animal,
     /// A beard with moustache and brows.
     Beard,
+    /// Hair that is drawn back into a tie, where its tips are held, and a tail that hangs from there.
+    Ponytail,
 }
 
 impl Style {
     /// Every style.
-    pub const ALL: [Self; 7] =
-        [Self::Straight, Self::Wavy, Self::Curly, Self::Long, Self::Fur, Self::Animal, Self::Beard];
+    pub const ALL: [Self; 8] =
+        [Self::Straight, Self::Wavy, Self::Curly, Self::Long, Self::Fur, Self::Animal, Self::Beard, Self::Ponytail];
 
     /// The name by which [`Builtin`] parses it.
     pub fn name(self) -> &'static str {
@@ -59,6 +63,7 @@ impl Style {
             Self::Fur => "fur",
             Self::Animal => "animal",
             Self::Beard => "beard",
+            Self::Ponytail => "ponytail",
         }
     }
 
@@ -72,6 +77,7 @@ impl Style {
             Self::Fur => (40_000, 8),
             Self::Animal => (60_000, 6),
             Self::Beard => (9_000, 12),
+            Self::Ponytail => (12_000, 32),
         }
     }
 }
@@ -93,7 +99,7 @@ pub struct Builtin {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BuiltinError {
     /// There is no such style.
-    #[error("no built-in groom {0:?}: there are straight, wavy, curly, long, fur, animal and beard")]
+    #[error("no built-in groom {0:?}: there are straight, wavy, curly, long, fur, animal, beard and ponytail")]
     Name(String),
     /// A count is no number, or out of range.
     #[error("built-in groom {groom:?}: {field} {value:?} must be a number from {min} to {max}")]
@@ -162,15 +168,25 @@ impl Builtin {
     /// Grows the groom. Every vertex is outside of the body. A pure function of the fields.
     pub fn asset(&self) -> HairAsset {
         let (vertices, body) = (self.vertices.clamp(MIN_VERTICES, MAX_VERTICES), self.body());
-        let look = Look::of(self.style);
-        let roots = roots::roots(&look, &body, self.strands.clamp(1, MAX_STRANDS) as usize, self.seed);
-        let points = clumps::grow(&look, &body, &roots, vertices as usize, self.seed);
+        let (look, strands) = (Look::of(self.style), self.strands.clamp(1, MAX_STRANDS) as usize);
+        let (roots, points, inverse_mass) = match tie(self.style, &body) {
+            Some(tie) => {
+                let tail = ponytail::grow(&look, &body, &tie, strands, vertices as usize, self.seed);
+                (tail.roots, tail.points, Some(tail.inverse_mass))
+            }
+            None => {
+                let roots = roots::roots(&look, &body, strands, self.seed);
+                let points = clumps::grow(&look, &body, &roots, vertices as usize, self.seed);
+                (roots, points, None)
+            }
+        };
         let uv = |root: &roots::Root| {
             let around = root.direction.x.atan2(root.direction.z) / std::f32::consts::TAU;
             [around + 0.5, 0.5 - 0.5 * root.direction.y]
         };
         HairAsset {
             strand_uvs: Some(roots.iter().map(uv).collect()),
+            inverse_mass,
             ..HairAsset::new(self.to_string(), AssetFormat::Builtin, points, vec![vertices; roots.len()])
         }
     }
@@ -186,12 +202,14 @@ impl Builtin {
         self.body().capsules()
     }
 
-    /// The head, neck and shoulders, or the animal, to be drawn under the hair.
+    /// The head, neck and shoulders, with the tie of a pony tail; or the animal; to be drawn under the hair.
     pub fn mesh(&self) -> Mesh {
         let body = self.body();
         let mut mesh = Mesh::default();
         body.head.iter().for_each(|head| mesh.append(&Mesh::ellipsoid(head, 48)));
         body.solids().for_each(|capsule| mesh.append(&Mesh::capsule(capsule, 48)));
+        let ring = tie(self.style, &body).map_or_else(Vec::new, |tie| tie.ring());
+        ring.iter().for_each(|capsule| mesh.append(&Mesh::capsule(capsule, 16)));
         mesh
     }
 
@@ -202,4 +220,9 @@ impl Builtin {
             _ => Body::bust(),
         }
     }
+}
+
+/// What the hair of a pony tail is drawn into.
+fn tie(style: Style, body: &Body) -> Option<Tie> {
+    body.head.as_ref().filter(|_| style == Style::Ponytail).map(Tie::on)
 }

@@ -20,7 +20,9 @@ fn every_style_is_sound_and_starts_on_the_head() {
         assert_eq!((report.strands, report.max_vertices), (500, builtin.vertices));
         assert_eq!(report.metres_per_unit, 1.0);
         assert!(report.oddities.is_empty(), "{style:?}: {:?}", report.oddities);
-        for range in asset.ranges() {
+        // The others of a pony tail begin in its tie.
+        let on_head = if style == Style::Ponytail { 275 } else { 500 };
+        for range in asset.ranges().take(on_head) {
             let root = asset.points[range.start].into();
             let off = match builtin.head() {
                 Some(head) => head.level(root) - 1.0,
@@ -82,6 +84,26 @@ fn a_beard_leaves_mouth_eyes_and_forehead_free() {
     assert_eq!(roots.iter().filter(|root| free(root)).count(), 0);
     let brows = roots.iter().filter(|root| root.y > 0.0).count();
     assert!(brows > 100 && brows < roots.len() / 4, "{brows} hairs of brows");
+}
+
+#[test]
+fn a_pony_tail_is_held_where_it_is_drawn_together() {
+    let asset = Builtin { strands: 2000, ..Builtin::from(Style::Ponytail) }.asset();
+    let masses = asset.inverse_mass.as_ref().expect("tips are held");
+    let at = |vertex: usize| Vec3::from(asset.points[vertex]);
+    let ranges: Vec<_> = asset.ranges().collect();
+    let (skull, tail): (Vec<_>, Vec<_>) = ranges.into_iter().partition(|range| masses[range.end - 1] == 0.0);
+    assert_eq!((skull.len(), tail.len()), (1100, 900));
+    let tie = skull.iter().map(|range| at(range.end - 1)).sum::<Vec3>() / 1100.0;
+    assert!(tie.z < -0.09 && tie.y > 0.03, "at the back of the head: {tie}");
+    let in_tie = skull.iter().map(|range| range.end - 1).chain(tail.iter().map(|range| range.start));
+    let farthest = in_tie.map(|vertex| at(vertex).distance(tie)).fold(0.0, f32::max);
+    assert!(farthest < 0.015, "{farthest} m from the middle of the tie");
+    let lowest = tail.iter().map(|range| at(range.end - 1).y).fold(f32::INFINITY, f32::min);
+    assert!(lowest < tie.y - 0.2, "it hangs down: {lowest}");
+    for range in skull.iter().chain(&tail) {
+        assert_eq!(masses[range.start..range.start + 3], [0.0, 0.0, 1.0]);
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 31] = [
+const PICTURES: [(&str, &str); 32] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
@@ -50,6 +50,10 @@ const PICTURES: [(&str, &str); 31] = [
     ),
     // Whole periods of the motion, after the first.
     ("long-turn.gif", "builtin:long:2000 --follow 1 --motion turn --fps 20 --from 50 --frames 100 --size 256x256"),
+    (
+        "ponytail-shake.gif",
+        "builtin:ponytail:4000 --follow 1 --motion shake --fps 24 --from 48 --frames 80 --size 300x300 --camera 0.75,0.12,-0.5,0,-0.04,0,30",
+    ),
     (
         "mohawk-shake.gif",
         "TRESSFX_ASSETS/tressfx41_ratboy/Ratboy_mohawk.tfx --motion shake --fps 24 --from 48 --frames 80 --size 300x300",

@@ -63,6 +63,6 @@ fn first_direction(look: &Look, root: &Root, random: &mut impl Rng) -> Vec3 {
 }
 
 /// A random vector with coordinates from -0.5 to 0.5.
-fn in_cube(random: &mut impl Rng) -> Vec3 {
+pub(super) fn in_cube(random: &mut impl Rng) -> Vec3 {
     Vec3::new(random.random(), random.random(), random.random()) - 0.5
 }

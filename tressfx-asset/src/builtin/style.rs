@@ -85,6 +85,18 @@ impl Look {
                 clumping: 0.4,
                 ..Self::fur()
             },
+            Style::Ponytail => Self {
+                lift: 0.95,
+                gravity: 16.0,
+                hem: None,
+                length: 0.3,
+                length_spread: 0.2,
+                volume: 0.0,
+                clump_size: 60,
+                clumping: 0.7,
+                wave: Wave { radius: 0.004, pitch: 0.12, roundness: 0.4, onset: 0.08, looseness: 0.8 },
+                ..Self::long()
+            },
             Style::Beard => Self {
                 region: Region::Face,
                 lift: 0.4,
