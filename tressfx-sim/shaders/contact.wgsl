@@ -1,10 +1,13 @@
-// Contact with capsules: a vertex that is inside of one is pushed straight out of it, and slides on it with friction.
+// Contact with capsules: a vertex that is inside of one is pushed straight out of it, and slides on it with friction. With the feature `fields` some of them
+// are signed distance fields.
 
 import package::capsule::{GpuCapsule, GpuCapsuleMotion, clearance, nearest, origin_of, slid};
 import package::integrate::Free;
 import package::root::{Root, carried_from};
 import package::step::step;
 import package::vector::{direction_or, rotate, rotate_back};
+@if(fields)
+import package::field_contact::{beside, is_field, sample_of};
 
 /// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
 @group(0) @binding(5) var<storage, read> capsules: array<GpuCapsule>;
@@ -15,6 +18,9 @@ import package::vector::{direction_or, rotate, rotate_back};
 const FAR: f32 = 1e30;
 /// A computed clearance is multiplied by this, so that rounding cannot make it too large.
 const CERTAIN: f32 = 0.999;
+/// What is interpolated between nodes changes by up to the square root of 3 over a distance of 1.
+@if(fields)
+const SLOPE: f32 = 0.577;
 
 /// How far a point may go and touch no capsule; 0 or less if it is inside of one.
 fn clear_distance(point: vec3<f32>) -> f32 {
@@ -22,6 +28,12 @@ fn clear_distance(point: vec3<f32>) -> f32 {
     var clear = FAR;
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
         let capsule = capsules[i];
+        @if(fields) {
+            if (is_field(capsule)) {
+                clear = min(clear, SLOPE * sample_of(capsule, in_head).distance);
+                continue;
+            }
+        }
         clear = min(clear, clearance(capsule, in_head, nearest(capsule, in_head)));
     }
     return CERTAIN * clear;
@@ -33,6 +45,18 @@ fn pushed_out(root: Root, position: vec3<f32>, past: vec3<f32>) -> Free {
     var point = before;
     var displacement = rotate_back(step.head_rotation, position - past);
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        @if(fields) {
+            if (is_field(capsules[i])) {
+                let surface = surface_displacement(root, point, i);
+                let push = beside(capsules[i], point, displacement - surface);
+                let size = sqrt(dot(push, push));
+                if (size > 0.0) {
+                    displacement = surface + slid(displacement + push - surface, push / size, size, step.friction);
+                    point += push;
+                }
+                continue;
+            }
+        }
         let sphere = nearest(capsules[i], point);
         let from_center = point - sphere.xyz;
         if (dot(from_center, from_center) < sphere.w * sphere.w) {
@@ -46,6 +70,18 @@ fn pushed_out(root: Root, position: vec3<f32>, past: vec3<f32>) -> Free {
     }
     let after = position + rotate(step.head_rotation, point - before);
     return Free(after, after - rotate(step.head_rotation, displacement));
+}
+
+/// How far a point has gone at most as a field sees it.
+@if(fields)
+fn longest_way(root: Root, position: vec3<f32>, past: vec3<f32>) -> f32 {
+    let point = rotate_back(step.head_rotation, position);
+    let displacement = rotate_back(step.head_rotation, position - past);
+    var longest = 0.0;
+    for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        if (is_field(capsules[i])) { longest = max(longest, length(displacement - surface_displacement(root, point, i))); }
+    }
+    return longest;
 }
 
 /// The displacement of a capsule's surface at a point, on the axes of the head. Like that of a vertex it leaves out the share of the

@@ -17,6 +17,7 @@ mod buffers;
 mod clock;
 mod collider;
 mod error;
+pub mod field;
 mod input;
 mod kernel;
 pub mod metrics;
@@ -34,7 +35,7 @@ mod wind;
 
 pub use buffers::RootTransform;
 pub use clock::{Clock, ClockParams, FramePlan, SubStep};
-pub use collider::{CapsuleMotion, Collider, ColliderMotion};
+pub use collider::{CapsuleMotion, Collider, ColliderMotion, ColliderShape, PlacedShape};
 pub use error::SimError;
 pub use input::StepInput;
 pub use params::{ParamError, SimParams};

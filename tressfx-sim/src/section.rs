@@ -26,6 +26,8 @@ pub(crate) struct Shared {
     pub(crate) capsules: Option<CapsuleBuffers>,
     /// Strands that were reset because they had become non-finite.
     pub(crate) non_finite: BufferId,
+    /// All signed distance fields, if there may be any among the capsules.
+    pub(crate) fields: Option<BufferId>,
 }
 
 #[derive(Debug)]

@@ -4,15 +4,15 @@ use glam::{Quat, Vec3};
 use tressfx_core::backend::{Backend, Owner};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::shape::Capsule;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::strands::{Bounds, Strands};
 use tressfx_core::view::Pose;
 
 use crate::buffers::{ALONE, CapsuleBuffers, FIRST, RootTransform, storage};
 use crate::clock::{Clock, ClockParams, SubStep};
-use crate::collider::{CapsuleList, CapsuleMotion};
+use crate::collider::{CapsuleList, CapsuleMotion, ColliderShape, PlacedShape};
 use crate::error::SimError;
+use crate::field::Fields;
 use crate::input::{StepInput, check_pose};
 use crate::kernel::Kernels;
 use crate::params::SimParams;
@@ -88,6 +88,8 @@ pub struct HairSim {
     resets: u64,
     /// The capsules of the frame that is being recorded; kept for its memory.
     capsules: CapsuleList,
+    /// Fields that colliders may name.
+    field_count: usize,
     /// Of each section.
     standing: Vec<Option<Standing>>,
     /// Where it may sleep.
@@ -109,6 +111,36 @@ impl HairSim {
         sections: &[SectionDesc],
         max_colliders: usize,
     ) -> Result<Self, SimError> {
+        Self::made(backend, list, sections, max_colliders, None)
+    }
+
+    /// The same for colliders of which some may be signed distance fields ([`Fields::shape`]). The fields have to outlive the simulation, and are made before each
+    /// frame in which they have changed ([`Fields::record`]).
+    ///
+    /// # Errors
+    /// As [`HairSim::new`]; and a section that [`Solver::Direct`] moves, whose contacts know capsules alone.
+    pub fn with_fields(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        sections: &[SectionDesc],
+        max_colliders: usize,
+        fields: &Fields,
+    ) -> Result<Self, SimError> {
+        Self::made(backend, list, sections, max_colliders, Some(fields))
+    }
+
+    fn made(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        sections: &[SectionDesc],
+        max_colliders: usize,
+        fields: Option<&Fields>,
+    ) -> Result<Self, SimError> {
+        if let Some(section) =
+            sections.iter().position(|section| section.solver == Solver::Direct).filter(|_| fields.is_some())
+        {
+            return Err(SimError::FieldSolver { section });
+        }
         sections.iter().try_for_each(|section| section.params.validate())?;
         let bounds =
             sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
@@ -120,6 +152,7 @@ impl HairSim {
                     most => Some(CapsuleBuffers::new(backend, most, sections.len())?),
                 },
                 non_finite: storage(backend, "hair.non_finite", 4, 1)?,
+                fields: fields.filter(|fields| max_colliders > 0 && !fields.is_empty()).map(Fields::buffer),
             };
             let mut kernels = Kernels::default();
             let mut made = Vec::with_capacity(sections.len());
@@ -147,6 +180,7 @@ impl HairSim {
             clock,
             resets: 0,
             capsules,
+            field_count: fields.map_or(0, Fields::len),
             standing,
             sleep: None,
             owner,
@@ -164,6 +198,7 @@ impl HairSim {
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
+        self.check_fields(input)?;
         if self.sleeps_on(input) {
             self.clock.pass(input.dt);
             return Ok(StepReport { asleep: true, ..StepReport::default() });
@@ -242,6 +277,19 @@ impl HairSim {
     /// Wakes it for the next frame: for what it cannot know, such as [`HairSim::root_transforms`] that a kernel has written.
     pub fn wake(&mut self) {
         self.sleep.iter_mut().for_each(Sleep::wake);
+    }
+
+    fn check_fields(&self, input: &StepInput) -> Result<(), SimError> {
+        let count = self.field_count;
+        for (index, collider) in input.colliders.iter().enumerate() {
+            match collider.shape {
+                ColliderShape::Field { index: field, .. } if field as usize >= count => {
+                    return Err(SimError::NoField { index, field, count });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     /// Whether it sleeps in a frame.
@@ -395,12 +443,16 @@ impl HairSim {
         self.sections[section].buffers.steps.upload(list, ALONE, &[*step]);
     }
 
-    /// Records capsules for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
-    /// themselves. The capsules are relative to the centre of the groom.
+    /// Records capsules and fields for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
+    /// themselves. The shapes are relative to the centre of the groom.
     ///
     /// # Errors
     /// More capsules than the simulation was made for.
-    pub fn record_capsules(&self, list: &mut PassList, capsules: &[(Capsule, CapsuleMotion)]) -> Result<(), SimError> {
+    pub fn record_capsules<S: Into<PlacedShape> + Copy>(
+        &self,
+        list: &mut PassList,
+        capsules: &[(S, CapsuleMotion)],
+    ) -> Result<(), SimError> {
         let most = self.shared.capsules.map_or(0, |buffers| buffers.most);
         if capsules.len() > most {
             return Err(SimError::TooManyColliders { given: capsules.len(), most });

@@ -1,16 +1,31 @@
-//! Contact with capsules: `shaders/contact.wgsl`.
+//! Contact with capsules and fields: `shaders/contact.wgsl` and `shaders/field_contact.wgsl`.
 
 use glam::{DVec3, DVec4};
 use tressfx_core::shape::Capsule;
 
 use crate::collider::CapsuleMotion;
 use crate::reference::Guide;
+use crate::reference::field::PlacedField;
 use crate::reference::roots::RootMotion;
 use crate::reference::vector::{direction_or, rotate_back};
 use crate::step::Step;
 
-/// Every vertex that is inside of a capsule is pushed straight out of it, one capsule after the other, and slides on it with friction.
-pub(super) fn contacts(step: &Step, guide: &mut Guide, root: &RootMotion, capsules: &[(Capsule, CapsuleMotion)]) {
+/// The way of a point is followed in steps no shorter than this share of a cell,
+const SHORTEST: f64 = 0.25;
+/// and there are no more than these.
+const STEPS: f64 = 32.0;
+/// How often a point is pushed out of a field.
+const PUSHES: usize = 3;
+
+/// Every vertex that is inside of a capsule is pushed straight out of it, one capsule after the other, and slides on it with friction. Then every vertex that is inside of a
+/// field, or has touched it on its way, is held beside it.
+pub(super) fn contacts(
+    step: &Step,
+    guide: &mut Guide,
+    root: &RootMotion,
+    capsules: &[(Capsule, CapsuleMotion)],
+    fields: &[PlacedField],
+) {
     for i in (0..guide.vertices()).filter(|&i| guide.rest[i].w > 0.0) {
         let mut point = step.in_head(guide.positions[i]);
         let mut displacement = point - step.in_head(guide.previous[i]);
@@ -27,11 +42,50 @@ pub(super) fn contacts(step: &Step, guide: &mut Guide, root: &RootMotion, capsul
                 touched = true;
             }
         }
+        for field in fields {
+            let surface = surface_displacement(step, root, &field.motion, point);
+            let push = beside(field, point, displacement - surface);
+            let size = push.length();
+            if size > 0.0 {
+                displacement = surface + slid(displacement + push - surface, push / size, size, step.friction.into());
+                point += push;
+                touched = true;
+            }
+        }
         if touched {
             guide.positions[i] = step.in_world(point);
             guide.previous[i] = step.in_world(point - displacement);
         }
     }
+}
+
+/// By what a point is pushed that has gone along `way`, as the field sees it, to where it is. It is held where it touches first and goes on along the surface; what
+/// begins inside has touched at the beginning. Then it is pushed out where it is.
+fn beside(field: &PlacedField, point: DVec3, way: DVec3) -> DVec3 {
+    let length = way.length();
+    let (mut distance, mut normal) = field.sample(point);
+    if distance >= length {
+        return DVec3::ZERO;
+    }
+    let shortest = (SHORTEST * field.field.grid.cell).max(length / STEPS);
+    let (mut at, mut gone) = (point, 0.0);
+    while gone < length {
+        let left = 1.0 - gone / length;
+        let (clear, surface) = field.sample(point - way * left);
+        if clear <= 0.0 {
+            at -= (left * way.dot(surface)).min(0.0) * surface;
+            (distance, normal) = field.sample(at);
+            break;
+        }
+        gone += clear.max(shortest);
+    }
+    for _ in 0..PUSHES {
+        if distance < 0.0 {
+            at -= distance * normal;
+            (distance, normal) = field.sample(at);
+        }
+    }
+    at - point
 }
 
 /// The displacement of a capsule's surface at a point, without the share of the root's motion that the velocity shock has added
