@@ -20,7 +20,7 @@ const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength
 const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 18] = [
+const VARIANTS: [&[&str]; 19] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
@@ -37,6 +37,7 @@ const VARIANTS: [&[&str]; 18] = [
     &["builtin:long:40:8", "--params", "rods.toml"],
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
     &["--oit", "shortcut", "--hair-output"],
+    &["builtin:long:40:8", "--solver", "tressfx", "--fields"],
     &["--oit", "tiles"],
     &["--oit", "tiles", "--places", "4", "--hair-output"],
 ];
@@ -98,10 +99,12 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     let names = [
         "bounded",
         "fibre",
+        "fields",
         "follows",
         "global_shape",
         "hair_output",
         "internal_damping",
+        "open_edges",
         "ordered",
         "own_colors",
         "pinned_tips",
