@@ -210,16 +210,25 @@ gpu_struct! {
     }
 }
 
+gpu_struct! {
+    /// A collider as the kernel reads it.
+    pub(crate) struct GpuCollider {
+        /// Where it is at the end of the sub-step.
+        pub capsule: GpuCapsule,
+        /// How it has moved.
+        pub motion: GpuCapsuleMotion,
+    }
+}
+
 /// The capsules and fields of some sub-steps, as they are uploaded.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct CapsuleList {
-    pub(crate) capsules: Vec<GpuCapsule>,
-    pub(crate) motions: Vec<GpuCapsuleMotion>,
+pub(crate) struct ColliderList {
+    pub(crate) colliders: Vec<GpuCollider>,
     /// Where the last list of each section is.
     last: Vec<std::ops::Range<u32>>,
 }
 
-impl<S: Into<PlacedShape>> FromIterator<(S, CapsuleMotion)> for CapsuleList {
+impl<S: Into<PlacedShape>> FromIterator<(S, CapsuleMotion)> for ColliderList {
     fn from_iter<I: IntoIterator<Item = (S, CapsuleMotion)>>(shapes: I) -> Self {
         let mut list = Self::default();
         shapes.into_iter().for_each(|(shape, motion)| list.push(shape.into(), motion));
@@ -227,38 +236,33 @@ impl<S: Into<PlacedShape>> FromIterator<(S, CapsuleMotion)> for CapsuleList {
     }
 }
 
-impl CapsuleList {
+impl ColliderList {
     fn push(&mut self, shape: PlacedShape, motion: CapsuleMotion) {
         let CapsuleMotion { rotation, translation } = motion;
-        self.capsules.push(GpuCapsule::new(shape));
-        self.motions.push(GpuCapsuleMotion { rotation: rotation.into(), translation, padding: 0.0 });
+        let motion = GpuCapsuleMotion { rotation: rotation.into(), translation, padding: 0.0 };
+        self.colliders.push(GpuCollider { capsule: GpuCapsule::new(shape), motion });
     }
 
     pub(crate) fn clear(&mut self) {
-        self.capsules.clear();
-        self.motions.clear();
+        self.colliders.clear();
         self.last.clear();
     }
 
     /// Adds what a section collides with in a sub-step, and says where it is. What equals an earlier list is not added again:
     /// capsules that move with the head are the same in all sub-steps.
     pub(crate) fn add(&mut self, colliders: &[Collider], section: usize, center: Vec3, sub_step: &SubStep) -> [u32; 2] {
-        let first = self.capsules.len();
+        let first = self.colliders.len();
         for collider in colliders.iter().filter(|collider| !collider.except.contains(&section)) {
             let (shape, motion) = collider.at(center, sub_step);
             self.push(shape, motion);
         }
-        let (capsules, motions) = (&self.capsules, &self.motions);
-        let equals = |range: &std::ops::Range<u32>| {
-            let range = range.start as usize..range.end as usize;
-            capsules[range.clone()] == capsules[first..] && motions[range] == motions[first..]
-        };
+        let all = &self.colliders;
+        let equals = |range: &std::ops::Range<u32>| all[range.start as usize..range.end as usize] == all[first..];
         let found = self.last.iter().find(|range| equals(range)).cloned();
         if found.is_some() {
-            self.capsules.truncate(first);
-            self.motions.truncate(first);
+            self.colliders.truncate(first);
         }
-        let range = found.unwrap_or(first as u32..self.capsules.len() as u32);
+        let range = found.unwrap_or(first as u32..self.colliders.len() as u32);
         if self.last.len() <= section {
             self.last.resize(section + 1, 0..0);
         }

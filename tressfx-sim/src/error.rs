@@ -39,12 +39,6 @@ pub enum SimError {
         /// How many fields the simulation was made with.
         count: usize,
     },
-    /// A solver that knows no fields.
-    #[error("section {section}: the solver `direct` collides with capsules, not with fields: choose `tressfx`")]
-    FieldSolver {
-        /// The section.
-        section: usize,
-    },
     /// More colliders than the simulation was made for.
     #[error("step: {given} colliders, the simulation was made for {most}")]
     TooManyColliders {

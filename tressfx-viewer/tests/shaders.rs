@@ -20,7 +20,7 @@ const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength
 const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 19] = [
+const VARIANTS: [&[&str]; 20] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml"],
@@ -38,6 +38,7 @@ const VARIANTS: [&[&str]; 19] = [
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
     &["--oit", "shortcut", "--hair-output"],
     &["builtin:long:40:8", "--solver", "tressfx", "--fields"],
+    &["builtin:long:40:8", "--fields"],
     &["--oit", "tiles"],
     &["--oit", "tiles", "--places", "4", "--hair-output"],
 ];

@@ -1,4 +1,5 @@
 //! Meshes that tests of fields share.
+#![allow(dead_code, reason = "each test takes what it needs")]
 
 use std::path::PathBuf;
 

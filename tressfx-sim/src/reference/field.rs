@@ -12,6 +12,13 @@ use super::{
 /// Triangles of which less than this is area, over the square of the square of the longest edge, are as good as segments.
 const FLAT: f64 = 1e-10;
 
+/// The way of a point past a field is followed in steps no shorter than this share of a cell,
+const SHORTEST: f64 = 0.25;
+/// and there are no more than these.
+const STEPS: f64 = 32.0;
+/// Where the normal has turned by more than what this cosine says since a point touched, it has got to another side.
+const SAME_SIDE: f64 = 0.3;
+
 /// Three corners.
 pub type Triangle = [DVec3; 3];
 
@@ -120,7 +127,7 @@ impl Field {
 
 /// A field that strands collide with in a sub-step, in the space of the head, relative to the centre of the groom: points of its mesh are rotated, then
 /// moved by the translation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedField<'a> {
     /// The field.
     pub field: &'a Field,
@@ -137,6 +144,37 @@ impl PlacedField<'_> {
     pub fn sample(&self, point: DVec3) -> (f64, DVec3) {
         let (distance, normal) = self.field.sample(self.rotation.inverse() * (point - self.translation));
         (distance, self.rotation * normal)
+    }
+
+    /// Where a point that goes along `way` to `point`, as the field sees it, first touches: the share of the way, and what is sampled there. What begins inside
+    /// touches at the beginning.
+    pub(super) fn first_touch(&self, point: DVec3, way: DVec3) -> Option<(f64, f64, DVec3)> {
+        let length = way.length();
+        let shortest = (SHORTEST * self.field.grid.cell).max(length / STEPS);
+        let mut gone = 0.0;
+        while gone < length {
+            let (distance, normal) = self.sample(point - way * (1.0 - gone / length));
+            if distance <= 0.0 {
+                return Some((gone / length, distance, normal));
+            }
+            gone += distance.max(shortest);
+        }
+        None
+    }
+
+    /// The plane that holds a point which has gone along `way` to where it is: the distance from it and its normal. That of the surface where the point is; or
+    /// where it has got to another side, that of the surface where it has touched first.
+    pub(super) fn met_by(&self, point: DVec3, way: DVec3) -> (f64, DVec3) {
+        let found = self.sample(point);
+        if found.0 > way.length() {
+            return found;
+        }
+        match self.first_touch(point, way) {
+            Some((share, distance, normal)) if found.1.dot(normal) < SAME_SIDE => {
+                (distance + (1.0 - share) * way.dot(normal), normal)
+            }
+            _ => found,
+        }
     }
 }
 

@@ -15,7 +15,8 @@ use crate::error::SimError;
 use crate::input::StepInput;
 use crate::params::SimParams;
 use crate::rods::rod_rest;
-use crate::sim::{SectionDesc, StepReport};
+use crate::section_desc::SectionDesc;
+use crate::sim::StepReport;
 use crate::solver::Solver;
 use crate::step::{SectionInfo, Step};
 
@@ -92,7 +93,7 @@ impl<'a> Simulation<'a> {
                 section.move_roots();
                 match section.info.solver {
                     Solver::TressFx => _ = section.positions_step(&[], &[]),
-                    Solver::Direct => _ = section.rods_step(&[]),
+                    Solver::Direct => _ = section.rods_step(&[], &[]),
                 }
             }
             for sub_step in &plan.sub_steps {
@@ -104,7 +105,7 @@ impl<'a> Simulation<'a> {
                 section.move_roots();
                 self.non_finite += match section.info.solver {
                     Solver::TressFx => section.positions_step(&capsules, &fields),
-                    Solver::Direct => section.rods_step(&capsules),
+                    Solver::Direct => section.rods_step(&capsules, &fields),
                 };
             }
         }
@@ -206,12 +207,12 @@ impl<'a> Section<'a> {
     }
 
     /// A sub-step of rods, or their reset; says how many had become non-finite.
-    fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
+    fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], fields: &[PlacedField]) -> u64 {
         let mut rods = std::mem::take(&mut self.rods);
         let mut non_finite = 0;
         self.each_guide(|step, _, index, guide| {
             let (rest, rod) = &mut rods[index as usize];
-            non_finite += u64::from(direct_guide(step, guide, rest, rod, index, capsules));
+            non_finite += u64::from(direct_guide(step, guide, rest, rod, index, capsules, fields));
         });
         self.rods = rods;
         non_finite

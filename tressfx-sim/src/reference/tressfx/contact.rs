@@ -10,10 +10,6 @@ use crate::reference::roots::RootMotion;
 use crate::reference::vector::{direction_or, rotate_back};
 use crate::step::Step;
 
-/// The way of a point is followed in steps no shorter than this share of a cell,
-const SHORTEST: f64 = 0.25;
-/// and there are no more than these.
-const STEPS: f64 = 32.0;
 /// How often a point is pushed out of a field.
 const PUSHES: usize = 3;
 
@@ -59,25 +55,17 @@ pub(super) fn contacts(
     }
 }
 
-/// By what a point is pushed that has gone along `way`, as the field sees it, to where it is. It is held where it touches first and goes on along the surface; what
-/// begins inside has touched at the beginning. Then it is pushed out where it is.
+/// By what a point is pushed that has gone along `way`, as the field sees it, to where it is. It is held where it touches first and goes on along the surface; then it
+/// is pushed out where it is.
 fn beside(field: &PlacedField, point: DVec3, way: DVec3) -> DVec3 {
-    let length = way.length();
     let (mut distance, mut normal) = field.sample(point);
-    if distance >= length {
+    if distance >= way.length() {
         return DVec3::ZERO;
     }
-    let shortest = (SHORTEST * field.field.grid.cell).max(length / STEPS);
-    let (mut at, mut gone) = (point, 0.0);
-    while gone < length {
-        let left = 1.0 - gone / length;
-        let (clear, surface) = field.sample(point - way * left);
-        if clear <= 0.0 {
-            at -= (left * way.dot(surface)).min(0.0) * surface;
-            (distance, normal) = field.sample(at);
-            break;
-        }
-        gone += clear.max(shortest);
+    let mut at = point;
+    if let Some((share, _, surface)) = field.first_touch(point, way) {
+        at -= ((1.0 - share) * way.dot(surface)).min(0.0) * surface;
+        (distance, normal) = field.sample(at);
     }
     for _ in 0..PUSHES {
         if distance < 0.0 {
