@@ -20,7 +20,7 @@ const GRIP: f64 = 0.01;
 /// There is another round where an edge is deeper than this share of the radius,
 const DEEP: f64 = 0.1;
 /// or, in a field, deeper than so many cells.
-const DEEP_CELLS: f64 = 0.25;
+const DEEP_CELLS: f64 = 0.1;
 /// An edge touches between its ends where it is nearer to the axis there than at its ends; in full from this share of the
 /// radius on.
 const NEARER: f64 = 0.1;
@@ -278,8 +278,8 @@ impl Motion<'_> {
     /// The contact of the end of an edge with a field.
     fn field_touch(&self, rod: &Rod, edge: usize, index: usize, field: &FieldObstacle) -> Option<Contact> {
         let moved = rod.positions[edge + 1] - (field.rotation * self.before[edge + 1] + field.translation);
-        let (gap, normal) = field.placed.met_by(rod.positions[edge + 1], moved);
         let last = Some(rod.touches[edge]).filter(|last| last.obstacle == index + 1).unwrap_or_default();
+        let (gap, normal) = field.placed.met_by(rod.positions[edge + 1], moved, last.normal);
         let stretched = last.stretch + moved;
         let stretch = stretched - stretched.dot(normal) * normal;
         let point = Point { near: Near { s: 1.0, t: 0.0, normal, gap }, weight: 1.0 };
