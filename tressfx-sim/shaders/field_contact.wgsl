@@ -75,29 +75,12 @@ fn beside(shape: GpuCapsule, point: vec3<f32>, way: vec3<f32>) -> vec3<f32> {
 }
 
 /// The plane that holds a point which has gone along `way` to where it is: the distance from it, negative where it is to be pushed, and its normal. That of the
-/// surface where the point is; or where it has got to another side, that of the surface where it has touched first. What begins inside has touched on the side
-/// that `last` is the normal of, if it is known; else it is 0.
-fn met_by(shape: GpuCapsule, point: vec3<f32>, way: vec3<f32>, last: vec3<f32>) -> Sample {
+/// surface where the point is; or where it has got to another side, that of the surface where it has touched first.
+fn met_by(shape: GpuCapsule, point: vec3<f32>, way: vec3<f32>) -> Sample {
     let found = sample_of(shape, point);
     if (found.distance > sqrt(dot(way, way))) { return found; }
     let first = first_touch_of(shape, point, way);
-    if (first.share >= 1.0) { return found; }
-    let is_known = first.share == 0.0 && dot(last, last) > 0.0;
-    let side = select(first.here.normal, last, is_known);
-    if (dot(found.normal, side) >= STILL_BESIDE) { return found; }
-    var distance = first.here.distance;
-    if (is_known) { distance = -way_out(shape, point - way, side); }
-    return Sample(distance + (1.0 - first.share) * dot(way, side), side);
-}
-
-/// How far it is from a point inside of a field to its surface, in a direction.
-fn way_out(shape: GpuCapsule, point: vec3<f32>, side: vec3<f32>) -> f32 {
-    let shortest = SHORTEST * header(field_of(shape), CELL);
-    var gone = 0.0;
-    for (var i = 0u; i < STEPS; i++) {
-        let distance = sample_of(shape, point + gone * side).distance;
-        if (distance >= 0.0) { break; }
-        gone += max(-distance, shortest);
-    }
-    return gone;
+    if (first.share >= 1.0 || dot(found.normal, first.here.normal) >= STILL_BESIDE) { return found; }
+    let left = (1.0 - first.share) * dot(way, first.here.normal);
+    return Sample(first.here.distance + left, first.here.normal);
 }

@@ -115,8 +115,7 @@ fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, mass: f32) -> Contacts 
 fn touch_field(contacts: ptr<function, Contacts>, root: vec3<f32>, edge: Edge, way: Way, last: Touch, index: u32, mass: f32) {
     let shape = colliders[step.first_capsule + index - 1u].capsule;
     let end = rotate_back(step.head_rotation, root + edge.v);
-    let gone = rotate_back(step.head_rotation, edge.v - way.from_v);
-    let met = met_by(shape, end, gone, rotate_back(step.head_rotation, last.normal));
+    let met = met_by(shape, end, rotate_back(step.head_rotation, edge.v - way.from_v));
     let near = Near(1.0, 0.0, rotate(step.head_rotation, met.normal), met.distance);
     add(contacts, edge, way, near, 1.0, last.stretch, index, mass, depth_of_field(shape));
 }

@@ -163,34 +163,18 @@ impl PlacedField<'_> {
     }
 
     /// The plane that holds a point which has gone along `way` to where it is: the distance from it and its normal. That of the surface where the point is; or
-    /// where it has got to another side, that of the surface where it has touched first. What begins inside has touched on the side that `last` is the normal of, if it
-    /// is known; else it is 0.
-    pub(super) fn met_by(&self, point: DVec3, way: DVec3, last: DVec3) -> (f64, DVec3) {
+    /// where it has got to another side, that of the surface where it has touched first.
+    pub(super) fn met_by(&self, point: DVec3, way: DVec3) -> (f64, DVec3) {
         let found = self.sample(point);
         if found.0 > way.length() {
             return found;
         }
-        let Some((share, distance, normal)) = self.first_touch(point, way) else { return found };
-        let is_known = share == 0.0 && last != DVec3::ZERO;
-        let side = if is_known { last } else { normal };
-        if found.1.dot(side) >= SAME_SIDE {
-            return found;
-        }
-        let distance = if is_known { -self.way_out(point - way, side) } else { distance };
-        (distance + (1.0 - share) * way.dot(side), side)
-    }
-
-    /// How far it is from a point inside to the surface, in a direction.
-    fn way_out(&self, point: DVec3, side: DVec3) -> f64 {
-        let mut gone = 0.0;
-        for _ in 0..STEPS as u32 {
-            let distance = self.sample(point + gone * side).0;
-            if distance >= 0.0 {
-                break;
+        match self.first_touch(point, way) {
+            Some((share, distance, normal)) if found.1.dot(normal) < SAME_SIDE => {
+                (distance + (1.0 - share) * way.dot(normal), normal)
             }
-            gone += (-distance).max(SHORTEST * self.field.grid.cell);
+            _ => found,
         }
-        gone
     }
 }
 

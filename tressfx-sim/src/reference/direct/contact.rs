@@ -279,7 +279,7 @@ impl Motion<'_> {
     fn field_touch(&self, rod: &Rod, edge: usize, index: usize, field: &FieldObstacle) -> Option<Contact> {
         let moved = rod.positions[edge + 1] - (field.rotation * self.before[edge + 1] + field.translation);
         let last = Some(rod.touches[edge]).filter(|last| last.obstacle == index + 1).unwrap_or_default();
-        let (gap, normal) = field.placed.met_by(rod.positions[edge + 1], moved, last.normal);
+        let (gap, normal) = field.placed.met_by(rod.positions[edge + 1], moved);
         let stretched = last.stretch + moved;
         let stretch = stretched - stretched.dot(normal) * normal;
         let point = Point { near: Near { s: 1.0, t: 0.0, normal, gap }, weight: 1.0 };
