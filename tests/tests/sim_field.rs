@@ -205,8 +205,8 @@ fn judged(solid: &Solid, field: &Field, points: usize) -> Judged {
         let threads: Vec<_> = (0..threads).map(|seed| scope.spawn(move || part(seed))).collect();
         threads.into_iter().map(|thread| thread.join().expect("a part")).collect()
     });
-    let sum = |of: fn(&(Vec<f64>, usize, usize, usize)) -> usize| parts.iter().map(of).sum();
-    let (wrong, unsure, inside) = (sum(|part| part.1), sum(|part| part.2), sum(|part| part.3));
+    let [wrong, unsure, inside] =
+        parts.iter().fold([0; 3], |sums, part| [sums[0] + part.1, sums[1] + part.2, sums[2] + part.3]);
     let mut errors: Vec<f64> = parts.into_iter().flat_map(|part| part.0).collect();
     errors.sort_by(f64::total_cmp);
     let each = field.distances.len().div_ceil(2000).max(1);

@@ -140,7 +140,7 @@ fn contacts_match_their_reference() {
         let desc = SectionDesc::new(&strands, params.clone()).with_solver(solver);
         let Some(mut bodies) = Bodies::new(strands.clone(), params, solver, &descs_of(&meshes)) else { return };
         let fields = vec![bodies.field(0), bodies.field(1)];
-        let mut reference = reference::Simulation::new(&[desc.clone()]).unwrap().with_fields(fields);
+        let mut reference = reference::Simulation::new(std::slice::from_ref(&desc)).unwrap().with_fields(fields);
         let mut free = reference::Simulation::new(&[desc]).unwrap();
         shaken(&mut bodies, 6, |input| {
             reference.step(input).unwrap();
@@ -362,8 +362,10 @@ fn a_simulation_without_fields_has_nothing_of_them() {
         let mut slots = |fields: Option<&Fields>, most: usize| {
             let made = backend.shaders.len();
             match fields {
-                Some(fields) => HairSim::with_fields(&mut backend, &mut PassList::new(), &[desc.clone()], most, fields),
-                None => HairSim::new(&mut backend, &mut PassList::new(), &[desc.clone()], most),
+                Some(fields) => {
+                    HairSim::with_fields(&mut backend, &mut PassList::new(), std::slice::from_ref(&desc), most, fields)
+                }
+                None => HairSim::new(&mut backend, &mut PassList::new(), std::slice::from_ref(&desc), most),
             }
             .unwrap();
             let shader = backend.shaders[made..].iter().find(|shader| shader.label == label).unwrap().clone();
@@ -375,14 +377,14 @@ fn a_simulation_without_fields_has_nothing_of_them() {
         let with = slots(Some(&fields), 1);
         assert_eq!((with.0, with.1), (capsules.0 + 1, true));
 
-        let mut sim = HairSim::with_fields(&mut backend, &mut list, &[desc.clone()], 2, &fields).unwrap();
+        let mut sim = HairSim::with_fields(&mut backend, &mut list, std::slice::from_ref(&desc), 2, &fields).unwrap();
         sim.step(&mut list, &StepInput::new(DT, Pose::IDENTITY)).unwrap();
         let body = Collider::with_head(fields.shape(0).unwrap());
         let mut list = PassList::new();
         sim.step(&mut list, &StepInput::new(DT, Pose::IDENTITY).with_colliders(&[body])).unwrap();
         assert!(list.labels().all(|label| !label.contains("field")), "a body at rest is not made anew");
 
-        let mut without = HairSim::new(&mut backend, &mut list, &[desc.clone()], 2).unwrap();
+        let mut without = HairSim::new(&mut backend, &mut list, std::slice::from_ref(&desc), 2).unwrap();
         let error = without.step(&mut list, &StepInput::new(DT, Pose::IDENTITY).with_colliders(&[body])).unwrap_err();
         assert_eq!(error, SimError::NoField { index: 0, field: 0, count: 0 });
     }
