@@ -21,6 +21,7 @@ use tressfx_render::{
     Pigment, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets,
     Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
+use tressfx_sim::field::{FieldDesc, Fields};
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
 
 use table::{GUIDE, Row, rows, words};
@@ -169,7 +170,10 @@ fn everything() -> PassList {
     let mut list = PassList::new();
     let section = rods.clone().with_solver(Solver::TressFx);
     let sections = [section.clone(), section.with_own_roots(), rods];
-    let mut sim = HairSim::new(&mut backend, &mut list, &sections, colliders.len()).unwrap();
+    let corners = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Y];
+    let mut fields = Fields::new(&mut backend, &mut list, &[FieldDesc::new(&corners, &[0, 1, 2])]).unwrap();
+    fields.record(&mut list);
+    let mut sim = HairSim::with_fields(&mut backend, &mut list, &sections, colliders.len(), &fields).unwrap();
     let wind = Wind::new(glam::Vec3::X);
     let turned = Pose { translation: glam::Vec3::X * 0.01, ..Pose::IDENTITY };
     for head in [Pose::IDENTITY, turned] {

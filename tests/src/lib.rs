@@ -18,6 +18,7 @@ pub mod rules;
 pub mod scene;
 pub mod show;
 pub mod sim;
+pub mod solid;
 pub mod suite;
 
 use tressfx_core::backend::Run;

@@ -111,7 +111,7 @@ fn collided(rig: &mut Rig, head: Pose) -> ([Pair; 2], usize) {
             previous: &mut previous[range],
             own_root: None,
         };
-        assert!(!reference::tressfx(&step, &limp(), &mut of_guide, 0, &capsules));
+        assert!(!reference::tressfx(&step, &limp(), &mut of_guide, 0, &capsules, &[]));
     }
     let touched =
         positions.chunks(vertices).zip(before.chunks(vertices)).filter(|(after, before)| after != before).count();
@@ -157,7 +157,7 @@ fn collided_reference(strands: &Strands, guide: usize, state: &State) -> State {
     let mut of_guide = Guide { rest, rest_lengths, positions, previous, own_root: None };
     let solids = solids().map(|capsule| (capsule, CapsuleMotion::STILL));
     let step = step(&SectionInfo::new(strands, Solver::TressFx), Pose::default());
-    assert!(!reference::tressfx(&step, &limp(), &mut of_guide, 0, &solids));
+    assert!(!reference::tressfx(&step, &limp(), &mut of_guide, 0, &solids, &[]));
     after
 }
 

@@ -165,10 +165,10 @@ fn colliders_come_and_go_without_new_kernels_and_not_beyond_their_number() {
     let error = sim.step(&mut list, &StepInput::new(DT, Pose::IDENTITY).with_colliders(&[ball; 3])).unwrap_err();
     assert_eq!(error, SimError::TooManyColliders { given: 3, most: 2 });
     let rotation = Quat::from_xyzw(0.0, 2.0, 0.0, 0.0);
-    let wrong = Collider::free(ball.capsule, Pose::IDENTITY, Pose { rotation, ..Pose::IDENTITY });
+    let wrong = Collider::free(ball.shape, Pose::IDENTITY, Pose { rotation, ..Pose::IDENTITY });
     let error = sim.step(&mut list, &StepInput::new(DT, Pose::IDENTITY).with_colliders(&[wrong])).unwrap_err();
     assert_eq!(error, SimError::NoRotation { name: "collider.rotation", length: 2.0 });
-    let unsound = Collider::with_head(Capsule { radius_a: -1.0, ..ball.capsule });
+    let unsound = Collider::with_head(Capsule { a: Vec3::ZERO, b: Vec3::ZERO, radius_a: -1.0, radius_b: 0.1 });
     let error = sim.step(&mut list, &StepInput::new(DT, Pose::IDENTITY).with_colliders(&[unsound])).unwrap_err();
     assert_eq!(error, SimError::UnsoundCapsule { index: 0 });
 }

@@ -96,7 +96,7 @@ fn expected(rig: &Rig, case: &Case, step: &Step, capsules: &[(Capsule, CapsuleMo
             previous: &mut state.1[range],
             own_root: None,
         };
-        let spoiled = reference::tressfx(step, &case.params, &mut of_guide, guide as u32, capsules);
+        let spoiled = reference::tressfx(step, &case.params, &mut of_guide, guide as u32, capsules, &[]);
         assert!(!spoiled, "guide {guide} is finite");
     }
 }

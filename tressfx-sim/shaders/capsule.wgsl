@@ -8,6 +8,9 @@ struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
 /// are rotated, then moved by `translation`.
 struct GpuCapsuleMotion { rotation: vec4<f32>, translation: vec3<f32>, padding: f32 }
 
+/// Something to collide with: at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom, and how it has moved.
+struct Collider { capsule: GpuCapsule, motion: GpuCapsuleMotion }
+
 /// Where a point of a capsule was at the beginning of the sub-step.
 fn origin_of(motion: GpuCapsuleMotion, point: vec3<f32>) -> vec3<f32> {
     return rotate_back(motion.rotation, point - motion.translation);

@@ -1,15 +1,14 @@
 // Contacts of a rod with capsules, and friction. A contact is a spring across the surface that only pushes; friction is one along
 // it that yields at Coulomb's limit. All vectors are on the axes of the world, places are from the root where it is now.
 
-import package::capsule::{GpuCapsule, GpuCapsuleMotion};
+import package::capsule::{Collider, GpuCapsule};
+@if(fields)
+import package::field_contact::{depth_of_field, is_field, met_by};
 import package::step::step;
 import package::symmetric::{Symmetric, outer, scaled, scaled_identity, sum};
 import package::vector::{DOWN, direction_or, rotate, rotate_back, turned_by};
 
-/// Capsules at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom.
-@group(0) @binding(7) var<storage, read> capsules: array<GpuCapsule>;
-/// How each of them has moved during the sub-step.
-@group(0) @binding(8) var<storage, read> capsule_motions: array<GpuCapsuleMotion>;
+@group(0) @binding(7) var<storage, read> colliders: array<Collider>;
 
 /// The stiffness of a contact times the square of the sub-step, over the mass of the vertex.
 const CONTACT: f32 = 100.0;
@@ -89,20 +88,36 @@ fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, mass: f32) -> Contacts 
     let none = scaled_identity(0.0);
     var contacts = Contacts(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0), nothing_touched());
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let capsule = capsule_at(root, i);
-        let near = nearest_points(capsule, edge.u, edge.v);
         let u_past = edge.u_moved - surface_moved(i, edge.u_before);
         let v_past = edge.v_moved - surface_moved(i, edge.v_before);
         let longest = sqrt(max(dot(u_past, u_past), dot(v_past, v_past)));
-        // Nothing of the way was nearer than this.
-        if (near.gap > longest) { continue; }
+        let way = Way(edge.u - u_past, edge.v - v_past, longest);
         let index = i - step.first_capsule + 1u;
         var known = nothing_touched();
         if (last.obstacle == index) { known = last; }
-        let way = Way(edge.u - u_past, edge.v - v_past, longest);
+        @if(fields) {
+            if (is_field(colliders[i].capsule)) {
+                touch_field(&contacts, root, edge, way, known, index, mass);
+                continue;
+            }
+        }
+        let capsule = capsule_at(root, i);
+        let near = nearest_points(capsule, edge.u, edge.v);
+        // Nothing of the way was nearer than this.
+        if (near.gap > longest) { continue; }
         touch_capsule(&contacts, capsule, edge, way, near, known, index, mass);
     }
     return contacts;
+}
+
+/// Adds the contact of the end of an edge with a field.
+@if(fields)
+fn touch_field(contacts: ptr<function, Contacts>, root: vec3<f32>, edge: Edge, way: Way, last: Touch, index: u32, mass: f32) {
+    let shape = colliders[step.first_capsule + index - 1u].capsule;
+    let end = rotate_back(step.head_rotation, root + edge.v);
+    let met = met_by(shape, end, rotate_back(step.head_rotation, edge.v - way.from_v));
+    let near = Near(1.0, 0.0, rotate(step.head_rotation, met.normal), met.distance);
+    add(contacts, edge, way, near, 1.0, last.stretch, index, mass, depth_of_field(shape));
 }
 
 /// Adds the contacts of an edge with one capsule.
@@ -133,16 +148,16 @@ fn touch_capsule(contacts: ptr<function, Contacts>, capsule: GpuCapsule, edge: E
     }
     // A loop, so that drivers that put functions in line do it once: it is what takes them longest to compile.
     for (var i = 0u; i < 2u; i++) {
-        add(contacts, capsule, edge, way, point, weight, last.stretch, index, mass);
+        add(contacts, edge, way, point, weight, last.stretch, index, mass, DEEP * radius_at(capsule, point.t));
         if (!touches_end) { break; }
         point = end;
         weight = 1.0;
     }
 }
 
-/// Adds the contact of a point of an edge, if it is inside. `stretch` is that of friction at the beginning of the sub-step.
-fn add(contacts: ptr<function, Contacts>, capsule: GpuCapsule, edge: Edge, way: Way, near: Near, weight: f32,
-       stretch: vec3<f32>, index: u32, mass: f32) {
+/// Adds the contact of a point of an edge, if it is inside. `stretch` is that of friction at the beginning of the sub-step; beyond `deep` the edge is deep.
+fn add(contacts: ptr<function, Contacts>, edge: Edge, way: Way, near: Near, weight: f32, stretch: vec3<f32>, index: u32,
+       mass: f32, deep: f32) {
     if (near.gap >= 0.0) { return; }
     let past = mix(edge.u - way.from_u, edge.v - way.from_v, near.s);
     let stretched = stretch + past;
@@ -169,14 +184,13 @@ fn add(contacts: ptr<function, Contacts>, capsule: GpuCapsule, edge: Edge, way: 
     (*contacts).torque += near.s * force;
     (*contacts).pull += push;
     if (near.gap < (*contacts).touch.gap) {
-        let deep = near.gap < -DEEP * radius_at(capsule, near.t);
-        (*contacts).touch = Touch(index, near.normal, held, near.gap, deep);
+        (*contacts).touch = Touch(index, near.normal, held, near.gap, near.gap < -deep);
     }
 }
 
 /// A capsule, from the root, on the axes of the world.
 fn capsule_at(root: vec3<f32>, index: u32) -> GpuCapsule {
-    let capsule = capsules[index];
+    let capsule = colliders[index].capsule;
     let a = rotate(step.head_rotation, capsule.a) - root;
     let b = rotate(step.head_rotation, capsule.b) - root;
     return GpuCapsule(a, capsule.radius_a, b, capsule.radius_b);
@@ -185,7 +199,7 @@ fn capsule_at(root: vec3<f32>, index: u32) -> GpuCapsule {
 /// By what a point that moves with a capsule has moved in the sub-step; `before` is where it was, relative to the centre of then.
 /// Exactly 0 where nothing moves.
 fn surface_moved(index: u32, before: vec3<f32>) -> vec3<f32> {
-    let motion = capsule_motions[index];
+    let motion = colliders[index].motion;
     let with_head = turned_by(step.head_turn, before);
     let in_head = rotate_back(step.head_rotation, before + with_head);
     let own = turned_by(motion.rotation, in_head) + motion.translation;
@@ -197,7 +211,7 @@ fn surface_bound(place: vec3<f32>, reach: f32) -> f32 {
     var most = 0.0;
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
         let moved = surface_moved(i, place);
-        let turn = length(step.head_turn.xyz) + length(capsule_motions[i].rotation.xyz);
+        let turn = length(step.head_turn.xyz) + length(colliders[i].motion.rotation.xyz);
         most = max(most, length(moved) + 2.0 * turn * reach);
     }
     return most;

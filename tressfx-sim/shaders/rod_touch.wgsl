@@ -3,8 +3,10 @@
 import package::capsule::{clearance, nearest};
 import package::rod::{LENGTHS, STRAIN, Strand, TOUCH, moved_slot, positions, rods, reach_of, slot};
 import package::rod_contact::{
-    CERTAIN, Edge, FAR, Touch, capsules, contacts_of, nothing_touched, packed_direction, surface_bound, unpacked_direction,
+    CERTAIN, Edge, FAR, Touch, colliders, contacts_of, nothing_touched, packed_direction, surface_bound, unpacked_direction,
 };
+@if(fields)
+import package::field_contact::{SLOPE, is_field, sample_of};
 import package::step::step;
 import package::vector::rotate_back;
 
@@ -77,7 +79,13 @@ fn clear_distance(place: vec3<f32>) -> f32 {
     let in_head = rotate_back(step.head_rotation, place);
     var clear = FAR;
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let capsule = capsules[i];
+        let capsule = colliders[i].capsule;
+        @if(fields) {
+            if (is_field(capsule)) {
+                clear = min(clear, SLOPE * sample_of(capsule, in_head).distance);
+                continue;
+            }
+        }
         clear = min(clear, clearance(capsule, in_head, nearest(capsule, in_head)));
     }
     return min(clear, CERTAIN * clear);

@@ -8,6 +8,8 @@
 import package::constants::{CHUNK, LENGTHS, LOCAL};
 @if(capsules)
 import package::contact::{clear_distance, pushed_out};
+@if(fields)
+import package::contact::longest_way;
 import package::grid::{GROUP, thread_index};
 import package::integrate::{Free, integrated};
 import package::lengths::{Stretching, stretched};
@@ -130,9 +132,14 @@ fn store(walk: ptr<function, Walk>, moved: vec4<f32>, root: Root, strand: u32, v
     var point = (*walk).origin + moved.xyz;
     @if(capsules) {
         (*walk).free_distance -= distance(point, (*walk).parent);
-        if (moved.w > 0.0 && (*walk).free_distance <= 0.0) {
+        // By how much what is next to a point has to be clear of it.
+        var way = 0.0;
+        @if(fields) {
+            way = longest_way(root, point, previous[vertex * step.guides + strand].xyz);
+        }
+        if (moved.w > 0.0 && (*walk).free_distance <= way) {
             let clear = clear_distance(point);
-            if (clear <= 0.0) {
+            if (clear <= way) {
                 let place = vertex * step.guides + strand;
                 let pushed = pushed_out(root, point, previous[place].xyz);
                 previous[place] = vec4(pushed.past, 0.0);

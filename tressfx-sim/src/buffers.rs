@@ -12,9 +12,9 @@ use tressfx_core::strands::{Strands, relative_to};
 use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::Pose;
 
-use crate::collider::{GpuCapsule, GpuCapsuleMotion};
+use crate::collider::GpuCollider;
 use crate::kernel::GROUP;
-use crate::sim::SectionDesc;
+use crate::section_desc::SectionDesc;
 use crate::solver::Solver;
 use crate::step::Step;
 
@@ -63,14 +63,12 @@ pub(crate) struct RootBuffers {
     pub(crate) now: BufferId,
 }
 
-/// The capsules of a frame, shared by all sections.
+/// The colliders of a frame, shared by all sections.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CapsuleBuffers {
-    /// [`GpuCapsule`].
-    pub(crate) capsules: BufferId,
-    /// [`GpuCapsuleMotion`].
-    pub(crate) motions: BufferId,
-    /// How many capsules a frame may have.
+pub(crate) struct ColliderBuffer {
+    /// [`GpuCollider`].
+    pub(crate) colliders: BufferId,
+    /// How many colliders a frame may have.
     pub(crate) most: usize,
 }
 
@@ -141,7 +139,7 @@ pub(crate) const ALONE: usize = 0;
 /// The step of the first sub-step of a frame.
 pub(crate) const FIRST: usize = 1;
 /// All of them.
-pub(crate) const STEPS: usize = FIRST + CapsuleBuffers::SUB_STEPS;
+pub(crate) const STEPS: usize = FIRST + ColliderBuffer::SUB_STEPS;
 
 impl RodBuffers {
     /// Of a vertex, in the buffer of the state.
@@ -171,18 +169,14 @@ impl RootBuffers {
     }
 }
 
-impl CapsuleBuffers {
-    /// For so many capsules in a frame of a groom of so many sections.
+impl ColliderBuffer {
+    /// For so many colliders in a frame of a groom of so many sections.
     pub(crate) fn new(backend: &mut dyn Backend, most: usize, sections: usize) -> Result<Self> {
         let count = (most * sections.max(1) * Self::SUB_STEPS) as u32;
-        Ok(Self {
-            capsules: storage(backend, "hair.capsules", size_of::<GpuCapsule>() as u64, count)?,
-            motions: storage(backend, "hair.capsule_motions", size_of::<GpuCapsuleMotion>() as u64, count)?,
-            most,
-        })
+        Ok(Self { colliders: storage(backend, "hair.colliders", size_of::<GpuCollider>() as u64, count)?, most })
     }
 
-    /// Of so many sub-steps the capsules are uploaded at once.
+    /// Of so many sub-steps the colliders are uploaded at once.
     pub(crate) const SUB_STEPS: usize = 16;
 }
 

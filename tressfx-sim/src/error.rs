@@ -29,6 +29,16 @@ pub enum SimError {
         /// Its index.
         index: usize,
     },
+    /// A collider is a field that the simulation was not made with.
+    #[error("step: collider {index} is field {field} of {count}")]
+    NoField {
+        /// Its index.
+        index: usize,
+        /// The field.
+        field: u32,
+        /// How many fields the simulation was made with.
+        count: usize,
+    },
     /// More colliders than the simulation was made for.
     #[error("step: {given} colliders, the simulation was made for {most}")]
     TooManyColliders {

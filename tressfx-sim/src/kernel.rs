@@ -3,6 +3,13 @@
 //! What the kernels of both solvers ask for, and the stages of `tressfx`, are in modules without an entry point.
 
 pub(crate) mod direct;
+pub(crate) mod field_bounds;
+pub(crate) mod field_crossings;
+pub(crate) mod field_flood;
+pub(crate) mod field_grid;
+pub(crate) mod field_seed;
+pub(crate) mod field_sign;
+pub(crate) mod field_splat;
 pub(crate) mod moved;
 pub(crate) mod roots;
 pub(crate) mod tangents;
@@ -26,6 +33,10 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
     ("contact", include_str!("../shaders/contact.wgsl")),
     ("eliminate", include_str!("../shaders/eliminate.wgsl")),
+    ("field", include_str!("../shaders/field.wgsl")),
+    ("field_contact", include_str!("../shaders/field_contact.wgsl")),
+    ("field_mesh", include_str!("../shaders/field_mesh.wgsl")),
+    ("field_side", include_str!("../shaders/field_side.wgsl")),
     ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
     ("lengths", include_str!("../shaders/lengths.wgsl")),
@@ -78,6 +89,20 @@ impl Kernels {
         let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
         self.0.push(kernel.clone());
         Ok(kernel)
+    }
+
+    /// A pass of a kernel that is always bound the same.
+    pub(crate) fn pass_of(
+        &mut self,
+        backend: &mut dyn Backend,
+        source: &ShaderSource,
+        specialization: &Specialization,
+        resources: &[(&str, Binding)],
+        grid: Grid,
+    ) -> Result<Pass> {
+        let kernel = self.get(backend, source, specialization)?;
+        let bindings = vec![kernel.bind(resources)?];
+        Ok(Pass { kernel, bindings, grid })
     }
 }
 

@@ -4,6 +4,14 @@
 //! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
 pub mod direct;
+pub mod field;
+mod field_bounds;
+mod field_crossings;
+mod field_flood;
+mod field_grid;
+mod field_seed;
+mod field_sign;
+mod field_splat;
 mod moved;
 mod roots;
 mod simulation;
@@ -17,6 +25,13 @@ use glam::{DVec3, Vec4};
 use crate::step::Step;
 use roots::RootMotion;
 
+pub use field_bounds::field_bounds;
+pub use field_crossings::field_crossings;
+pub use field_flood::field_flood;
+pub use field_grid::field_grid;
+pub use field_seed::field_seed;
+pub use field_sign::field_sign;
+pub use field_splat::field_splat;
 pub use moved::moved;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;

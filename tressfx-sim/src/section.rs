@@ -6,7 +6,7 @@ use tressfx_core::backend::Backend;
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
-use crate::buffers::{CapsuleBuffers, SectionBuffers, storage};
+use crate::buffers::{ColliderBuffer, SectionBuffers, storage};
 use crate::kernel::direct::direct;
 use crate::kernel::moved::moved;
 use crate::kernel::roots::roots;
@@ -14,7 +14,7 @@ use crate::kernel::tangents::tangents;
 use crate::kernel::tressfx::tressfx;
 use crate::kernel::{Kernels, Pass, PassMaker};
 use crate::params::SimParams;
-use crate::sim::SectionDesc;
+use crate::section_desc::SectionDesc;
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::SectionInfo;
@@ -22,10 +22,12 @@ use crate::step::SectionInfo;
 /// What all sections share.
 #[derive(Debug)]
 pub(crate) struct Shared {
-    /// Room for capsules, if there may be any.
-    pub(crate) capsules: Option<CapsuleBuffers>,
+    /// Room for colliders, if there may be any.
+    pub(crate) colliders: Option<ColliderBuffer>,
     /// Strands that were reset because they had become non-finite.
     pub(crate) non_finite: BufferId,
+    /// All signed distance fields, if there may be any among the colliders.
+    pub(crate) fields: Option<BufferId>,
 }
 
 #[derive(Debug)]

@@ -4,57 +4,25 @@ use glam::{Quat, Vec3};
 use tressfx_core::backend::{Backend, Owner};
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::shape::Capsule;
 use tressfx_core::strand_buffers::StrandBuffers;
-use tressfx_core::strands::{Bounds, Strands};
+use tressfx_core::strands::Bounds;
 use tressfx_core::view::Pose;
 
-use crate::buffers::{ALONE, CapsuleBuffers, FIRST, RootTransform, storage};
+use crate::buffers::{ALONE, ColliderBuffer, FIRST, RootTransform, storage};
 use crate::clock::{Clock, ClockParams, SubStep};
-use crate::collider::{CapsuleList, CapsuleMotion};
+use crate::collider::{CapsuleMotion, ColliderList, ColliderShape, PlacedShape};
 use crate::error::SimError;
+use crate::field::Fields;
 use crate::input::{StepInput, check_pose};
 use crate::kernel::Kernels;
 use crate::params::SimParams;
 use crate::rods::{GpuRods, Standing};
 use crate::section::{Shared, SimSection};
+use crate::section_desc::SectionDesc;
 use crate::sleep::{Measure, MotionTicket, Sleep, SleepParams};
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::Step;
-
-/// A section of a groom to be simulated.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct SectionDesc<'a> {
-    /// Its strands.
-    pub strands: &'a Strands,
-    /// How they move.
-    pub params: SimParams,
-    /// What solves their equations of motion.
-    pub solver: Solver,
-    /// Whether roots have transforms of their own ([`HairSim::set_roots`]). Where they have not, all ride on the head.
-    pub own_roots: bool,
-}
-
-impl<'a> SectionDesc<'a> {
-    /// Strands whose roots ride on the head.
-    pub fn new(strands: &'a Strands, params: SimParams) -> Self {
-        Self { strands, params, solver: Solver::default(), own_roots: false }
-    }
-
-    /// The same with roots that have transforms of their own.
-    #[must_use]
-    pub fn with_own_roots(self) -> Self {
-        Self { own_roots: true, ..self }
-    }
-
-    /// The same with another solver.
-    #[must_use]
-    pub fn with_solver(self, solver: Solver) -> Self {
-        Self { solver, ..self }
-    }
-}
 
 /// What a frame did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,8 +54,10 @@ pub struct HairSim {
     shared: Shared,
     clock: Clock,
     resets: u64,
-    /// The capsules of the frame that is being recorded; kept for its memory.
-    capsules: CapsuleList,
+    /// The colliders of the frame that is being recorded; kept for its memory.
+    colliders: ColliderList,
+    /// Fields that colliders may name.
+    field_count: usize,
     /// Of each section.
     standing: Vec<Option<Standing>>,
     /// Where it may sleep.
@@ -109,17 +79,43 @@ impl HairSim {
         sections: &[SectionDesc],
         max_colliders: usize,
     ) -> Result<Self, SimError> {
+        Self::made(backend, list, sections, max_colliders, None)
+    }
+
+    /// The same for colliders of which some may be signed distance fields ([`Fields::shape`]). The fields have to outlive the simulation, and are made before each
+    /// frame in which they have changed ([`Fields::record`]).
+    ///
+    /// # Errors
+    /// As [`HairSim::new`].
+    pub fn with_fields(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        sections: &[SectionDesc],
+        max_colliders: usize,
+        fields: &Fields,
+    ) -> Result<Self, SimError> {
+        Self::made(backend, list, sections, max_colliders, Some(fields))
+    }
+
+    fn made(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        sections: &[SectionDesc],
+        max_colliders: usize,
+        fields: Option<&Fields>,
+    ) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
         let bounds =
             sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
         let clock = Clock::new(ClockParams::default(), bounds)?;
         let ((shared, kernels, made), owner) = Owner::build(backend, |backend| {
             let shared = Shared {
-                capsules: match max_colliders {
+                colliders: match max_colliders {
                     0 => None,
-                    most => Some(CapsuleBuffers::new(backend, most, sections.len())?),
+                    most => Some(ColliderBuffer::new(backend, most, sections.len())?),
                 },
                 non_finite: storage(backend, "hair.non_finite", 4, 1)?,
+                fields: fields.filter(|fields| max_colliders > 0 && !fields.is_empty()).map(Fields::buffer),
             };
             let mut kernels = Kernels::default();
             let mut made = Vec::with_capacity(sections.len());
@@ -138,7 +134,6 @@ impl HairSim {
             }));
         }
         let strand_buffers = made.iter().map(|section| section.buffers.strands).collect();
-        let capsules = CapsuleList::default();
         Ok(Self {
             sections: made,
             strand_buffers,
@@ -146,7 +141,8 @@ impl HairSim {
             shared,
             clock,
             resets: 0,
-            capsules,
+            colliders: ColliderList::default(),
+            field_count: fields.map_or(0, Fields::len),
             standing,
             sleep: None,
             owner,
@@ -160,10 +156,11 @@ impl HairSim {
     /// Something in the input that is not finite or out of range, or too many colliders; nothing is recorded then.
     pub fn step(&mut self, list: &mut PassList, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
-        let most = self.shared.capsules.map_or(0, |buffers| buffers.most);
+        let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
         if input.colliders.len() > most {
             return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
         }
+        self.check_fields(input)?;
         if self.sleeps_on(input) {
             self.clock.pass(input.dt);
             return Ok(StepReport { asleep: true, ..StepReport::default() });
@@ -172,7 +169,7 @@ impl HairSim {
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
         }
-        for sub_steps in plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS) {
+        for sub_steps in plan.sub_steps.chunks(ColliderBuffer::SUB_STEPS) {
             self.record_sub_steps(list, sub_steps, input);
         }
         let report = StepReport {
@@ -183,7 +180,7 @@ impl HairSim {
             dropped: plan.dropped,
         };
         if report.reset || report.sub_steps > 0 {
-            let last = plan.sub_steps.chunks(CapsuleBuffers::SUB_STEPS).last();
+            let last = plan.sub_steps.chunks(ColliderBuffer::SUB_STEPS).last();
             let place = last.map_or(ALONE, |last| FIRST + last.len() - 1);
             self.sections.iter().for_each(|section| section.record(list, Solver::FRAME_END, place));
         }
@@ -242,6 +239,19 @@ impl HairSim {
     /// Wakes it for the next frame: for what it cannot know, such as [`HairSim::root_transforms`] that a kernel has written.
     pub fn wake(&mut self) {
         self.sleep.iter_mut().for_each(Sleep::wake);
+    }
+
+    fn check_fields(&self, input: &StepInput) -> Result<(), SimError> {
+        let count = self.field_count;
+        for (index, collider) in input.colliders.iter().enumerate() {
+            match collider.shape {
+                ColliderShape::Field { index: field, .. } if field as usize >= count => {
+                    return Err(SimError::NoField { index, field, count });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     /// Whether it sleeps in a frame.
@@ -395,17 +405,21 @@ impl HairSim {
         self.sections[section].buffers.steps.upload(list, ALONE, &[*step]);
     }
 
-    /// Records capsules for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
-    /// themselves. The capsules are relative to the centre of the groom.
+    /// Records capsules and fields for steps that name them. [`HairSim::step`] does this; tests and measurements of single kernels do it
+    /// themselves. The shapes are relative to the centre of the groom.
     ///
     /// # Errors
     /// More capsules than the simulation was made for.
-    pub fn record_capsules(&self, list: &mut PassList, capsules: &[(Capsule, CapsuleMotion)]) -> Result<(), SimError> {
-        let most = self.shared.capsules.map_or(0, |buffers| buffers.most);
+    pub fn record_capsules<S: Into<PlacedShape> + Copy>(
+        &self,
+        list: &mut PassList,
+        capsules: &[(S, CapsuleMotion)],
+    ) -> Result<(), SimError> {
+        let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
         if capsules.len() > most {
             return Err(SimError::TooManyColliders { given: capsules.len(), most });
         }
-        self.upload_capsules(list, &capsules.iter().copied().collect());
+        self.upload_colliders(list, &capsules.iter().copied().collect());
         Ok(())
     }
 
@@ -420,10 +434,9 @@ impl HairSim {
         self.owner.destroy(backend);
     }
 
-    fn upload_capsules(&self, list: &mut PassList, capsules: &CapsuleList) {
-        if let Some(buffers) = self.shared.capsules.filter(|_| !capsules.capsules.is_empty()) {
-            list.upload(buffers.capsules, 0, &capsules.capsules);
-            list.upload(buffers.motions, 0, &capsules.motions);
+    fn upload_colliders(&self, list: &mut PassList, colliders: &ColliderList) {
+        if let Some(buffers) = self.shared.colliders.filter(|_| !colliders.colliders.is_empty()) {
+            list.upload(buffers.colliders, 0, &colliders.colliders);
         }
     }
 
@@ -439,15 +452,15 @@ impl HairSim {
     }
 
     fn record_sub_steps(&mut self, list: &mut PassList, sub_steps: &[SubStep], input: &StepInput) {
-        let mut capsules = std::mem::take(&mut self.capsules);
-        capsules.clear();
+        let mut colliders = std::mem::take(&mut self.colliders);
+        colliders.clear();
         let center = self.clock.center();
         let mut each_section = |sub_step: &SubStep| -> Vec<[u32; 2]> {
             let sections = 0..self.sections.len();
-            sections.map(|section| capsules.add(input.colliders, section, center, sub_step)).collect()
+            sections.map(|section| colliders.add(input.colliders, section, center, sub_step)).collect()
         };
         let ranges: Vec<_> = sub_steps.iter().map(&mut each_section).collect();
-        self.upload_capsules(list, &capsules);
+        self.upload_colliders(list, &colliders);
         for (index, section) in self.sections.iter().enumerate() {
             let step = |(sub_step, ranges): (&SubStep, &Vec<[u32; 2]>)| {
                 let [first, end] = ranges[index];
@@ -457,7 +470,7 @@ impl HairSim {
             section.buffers.steps.upload(list, FIRST, &steps);
         }
         (0..sub_steps.len()).for_each(|index| self.record_sub_step(list, FIRST + index));
-        self.capsules = capsules;
+        self.colliders = colliders;
     }
 
     /// `place` is where the steps are.

@@ -5,11 +5,10 @@
 
 use tressfx_core::id::BufferId;
 use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::shape::Capsule;
 use tressfx_core::view::Pose;
 
 use crate::buffers::ALONE;
-use crate::collider::{Collider, ColliderMotion};
+use crate::collider::{Collider, ColliderMotion, ColliderShape};
 use crate::input::StepInput;
 use crate::kernel::Pass;
 use crate::params::{ParamError, within};
@@ -55,7 +54,7 @@ pub struct MotionTicket {
 /// A collider that outlives its frame.
 #[derive(Clone, Debug, PartialEq)]
 struct Held {
-    capsule: Capsule,
+    shape: ColliderShape,
     motion: ColliderMotion,
     except: Vec<usize>,
 }
@@ -70,7 +69,7 @@ struct Surroundings {
 impl Surroundings {
     fn new(input: &StepInput) -> Self {
         let held = |collider: &Collider| Held {
-            capsule: collider.capsule,
+            shape: collider.shape,
             motion: collider.motion,
             except: collider.except.to_vec(),
         };
@@ -81,7 +80,7 @@ impl Surroundings {
     fn go_on_in(&self, input: &StepInput) -> bool {
         let is_same = |(held, given): (&Held, &Collider)| {
             let moves = matches!(given.motion, ColliderMotion::Free { from, to } if from != to);
-            !moves && (held.capsule, held.motion) == (given.capsule, given.motion) && held.except == given.except
+            !moves && (held.shape, held.motion) == (given.shape, given.motion) && held.except == given.except
         };
         input.wind.is_none_or(|wind: Wind| wind.velocity == glam::Vec3::ZERO)
             && input.head == self.head

@@ -11,6 +11,7 @@ use tressfx_render::Look;
 use tressfx_sim::{Preset, Solver};
 
 use crate::camera::Camera;
+use crate::collide::Collision;
 use crate::develop::Develop;
 use crate::lod::Lod;
 use crate::oit::Oit;
@@ -107,6 +108,8 @@ pub(crate) struct Scene {
     /// A `local_stiffness` that a groom was made with for TressFX, as the bending length that is as stiff; it replaces what the parameters say
     #[arg(long, value_name = "0..1", value_parser = share, conflicts_with = "preset")]
     pub(crate) local_stiffness: Option<f32>,
+    #[command(flatten)]
+    pub(crate) collision: Collision,
     /// Follow strands of each guide; without it, what the file says, or more where a file has few strands
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=256))]
     pub(crate) follow: Option<u32>,
@@ -178,9 +181,6 @@ pub(crate) struct Render {
     /// Degrees by which the lights turn about the vertical axis from frame to frame
     #[arg(long, value_name = "DEGREES", default_value = "0", allow_negative_numbers = true)]
     pub(crate) light_turn: f32,
-    /// A mesh to be drawn with the hair, in its unit
-    #[arg(long, value_name = "FILE.obj")]
-    pub(crate) mesh: Option<PathBuf>,
     /// Write the depth of the hair in the last frame as 16-bit gray, the nearest white; what that stands for is printed
     #[arg(long, value_name = "FILE.png", value_parser = png, conflicts_with = "reference")]
     pub(crate) depth_out: Option<PathBuf>,
@@ -251,6 +251,9 @@ pub(crate) struct Shaders {
     /// Write the kernels for strands that bring colours of their own along too, though this groom has none
     #[arg(long)]
     pub(crate) own_colors: bool,
+    /// Write the kernels that make signed distance fields, and those that collide with them, too
+    #[arg(long)]
+    pub(crate) fields: bool,
     /// Write the kernels of a renderer that writes depth and coverage of the hair too
     #[arg(long)]
     pub(crate) hair_output: bool,

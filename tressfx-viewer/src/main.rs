@@ -6,6 +6,7 @@ mod backend;
 mod both;
 mod camera;
 mod cli;
+mod collide;
 mod compare;
 mod convert;
 mod develop;

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use glam::{Vec3, Vec4};
-use tressfx_asset::mesh::Mesh;
 
 use crate::cli::Render;
 use crate::picture::{Output, texels, write_linear};
@@ -20,9 +19,8 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     if args.from >= Run::frames(&args.scene) {
         bail!("--from {}: frames are from 0 to {}", args.from, Run::frames(&args.scene) - 1);
     }
-    let mesh = args.mesh.as_ref().map(Mesh::read).transpose()?;
     let mut run = Run::new(&args.scene)?;
-    let mut studio = Studio::new(&mut run, args, mesh)?;
+    let mut studio = Studio::new(&mut run, args)?;
     let frames = Run::frames(&args.scene);
     let progress = Progress::new(frames.into(), "frame");
     for frame in 0..frames {

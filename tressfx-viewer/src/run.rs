@@ -4,11 +4,13 @@ use anyhow::{Context, Result};
 use glam::Vec4;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
+use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::Caps;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::bending_length::of_local_stiffness;
+use tressfx_sim::field::Fields;
 use tressfx_sim::metrics::{self, EdgeError};
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
@@ -36,6 +38,10 @@ pub(crate) struct Run {
     /// Frames that were simulated.
     frame: u32,
     wind: Option<Wind>,
+    /// What is drawn with the hair.
+    pub(crate) meshes: Vec<Mesh>,
+    /// Of the meshes, if the hair collides with them.
+    fields: Option<Fields>,
     /// What the hair collides with; it moves with the head.
     colliders: Vec<Collider<'static>>,
 }
@@ -109,9 +115,17 @@ impl Run {
                 SectionDesc::new(strands, material(args, strands, params.sim(index).clone())).with_solver(solver)
             })
             .collect();
-        let colliders = Collider::all_with_head(&[&groom.capsules[..], &params.capsule].concat());
+        let meshes: Vec<Mesh> = args.collision.mesh()?.into_iter().chain(groom.mesh.clone()).collect();
+        let mut colliders = args.collision.capsules(&groom.capsules, &params.capsule);
         let mut uploads = PassList::new();
-        let mut sim = HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?;
+        let fields = args.collision.fields(&mut *backend, &mut uploads, &meshes)?;
+        let mut sim = match &fields {
+            None => HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?,
+            Some(fields) => {
+                colliders.push(Collider::with_head(fields.shape(0)?));
+                HairSim::with_fields(&mut *backend, &mut uploads, &sections, colliders.len(), fields)?
+            }
+        };
         backend.run(&uploads)?;
         // A frame of any length is simulated whole, with what the one before it left over.
         let longest = 1.0 / args.fps + params.clock.sub_step;
@@ -127,7 +141,7 @@ impl Run {
             BackendName::Wgpu | BackendName::Both => "wgpu",
         };
         let (times, trace) = (PassTimes::default(), Trace::new());
-        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind, colliders })
+        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind, meshes, fields, colliders })
     }
 
     /// How many frames come out: of no simulated ones, the rest pose.
@@ -145,6 +159,7 @@ impl Run {
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
         let at = |part: u32| self.head_at(args, f64::from(self.frame) + f64::from(part) / parts);
         let (path, head): (Vec<_>, _) = ((1..parts as u32).map(at).collect(), at(parts as u32));
+        self.fields.iter_mut().for_each(|fields| fields.record(&mut list));
         let input = StepInput::new(1.0 / args.fps, head).with_path(&path).with_colliders(&self.colliders);
         self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
         self.frame += 1;

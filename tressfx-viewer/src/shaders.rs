@@ -5,6 +5,7 @@ use std::fs;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
+use glam::Vec3;
 use serde::Serialize;
 use tressfx_core::backend::{Caps, Format};
 use tressfx_core::null::NullBackend;
@@ -13,6 +14,7 @@ use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
 use tressfx_render::{HairRenderer, OwnLook, RenderDesc};
+use tressfx_sim::field::{FieldDesc, Fields};
 use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams};
 
 use crate::cli;
@@ -124,7 +126,13 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let params = SimParams { sag_free: 0.0, ..params.sim(0).clone() };
     let section = SectionDesc::new(&groom.sections[0], params).with_solver(args.solver.solver());
     let sections = [section.clone(), section.with_own_roots()];
-    let mut sim = HairSim::new(&mut backend, &mut PassList::new(), &sections, 1)?;
+    let mut list = PassList::new();
+    let mut sim = if args.fields {
+        let fields = fields(&mut backend, &mut list)?;
+        HairSim::with_fields(&mut backend, &mut list, &sections, 1, &fields)?
+    } else {
+        HairSim::new(&mut backend, &mut list, &sections, 1)?
+    };
     sim.allow_sleep(&mut backend, SleepParams::default())?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
@@ -132,6 +140,14 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let desc = desc.velocity_output(true).own_colors(own_colors || args.own_colors);
     HairRenderer::new(&mut backend, &desc)?;
     Ok(backend.shaders)
+}
+
+/// A field of a mesh that is closed, and one of a mesh that is not.
+fn fields(backend: &mut NullBackend, list: &mut PassList) -> Result<Fields> {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
+    let [closed, open] = [&faces[..], &faces[3..]].map(|faces| FieldDesc::new(&corners, faces));
+    Ok(Fields::new(backend, list, &[closed, open])?)
 }
 
 /// The label, and where several kernels have it, the features that are on.

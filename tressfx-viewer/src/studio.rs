@@ -44,7 +44,7 @@ pub(crate) struct Studio {
 }
 
 impl Studio {
-    pub(crate) fn new(run: &mut Run, args: &Render, mesh: Option<Mesh>) -> Result<Self> {
+    pub(crate) fn new(run: &mut Run, args: &Render) -> Result<Self> {
         let view = args.camera.view(&run.groom.rest(), args.size)?;
         let backend = &mut *run.backend;
         let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
@@ -58,7 +58,7 @@ impl Studio {
             targets = targets.velocity(texture("velocity", VELOCITY_FORMAT)?);
         }
         let mut uploads = PassList::new();
-        let opaque: Vec<Mesh> = mesh.into_iter().chain(run.groom.mesh.clone()).collect();
+        let opaque = run.meshes.clone();
         let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
         let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {

@@ -94,7 +94,7 @@ pub(super) fn tressfx_is_as_in_f64(t: &mut Subject) {
     let mut expected = before.clone();
     for guide in 0..strands.guides {
         let mut of_guide = guide_of(&strands, &rest, &mut expected, guide as usize);
-        assert!(!reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules), "it is finite");
+        assert!(!reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules, &[]), "it is finite");
     }
     assert!(expected != before, "it does something");
     let error = error(&mut rig, &expected);
@@ -112,7 +112,7 @@ pub(super) fn a_strand_that_is_no_numbers_goes_to_rest(t: &mut Subject) {
     expected[0][3 * strands.vertices as usize + 5].x = f64::NAN;
     for guide in 0..strands.guides {
         let mut of_guide = guide_of(&strands, &rest, &mut expected, guide as usize);
-        let spoiled = reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules);
+        let spoiled = reference::tressfx(&step, &params(), &mut of_guide, guide, &capsules, &[]);
         assert_eq!(spoiled, guide == 3);
     }
     let error = error(&mut rig, &expected);

@@ -16,10 +16,11 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
     let buffers = maker.buffers;
     let Some(rods) = buffers.rods else { return Ok(None) };
-    // A strand that nothing can touch asks for no capsules.
-    let capsules = maker.shared.capsules;
+    // A strand that nothing can touch asks for no colliders.
+    let (colliders, fields) = (maker.shared.colliders, maker.shared.fields);
     let specialization = Specialization::new()
-        .feature("contacts", capsules.is_some())
+        .feature("contacts", colliders.is_some())
+        .feature("fields", fields.is_some())
         .feature("internal_damping", params.internal_damping > 0.0)
         .feature("pull", params.pull_frequency > 0.0)
         .feature("pinned_tips", buffers.pinned_tips);
@@ -30,8 +31,7 @@ pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option
         ("positions", buffers.strands.positions.into()),
         ("non_finite", maker.shared.non_finite.into()),
     ];
-    if let Some(capsules) = capsules {
-        resources.extend([("capsules", capsules.capsules.into()), ("capsule_motions", capsules.motions.into())]);
-    }
+    resources.extend(colliders.map(|buffer| ("colliders", buffer.colliders.into())));
+    resources.extend(fields.map(|fields| ("fields", fields.into())));
     maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
 }

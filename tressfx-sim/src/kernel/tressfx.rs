@@ -21,12 +21,13 @@ pub(crate) fn tressfx(maker: &mut PassMaker, params: &SimParams) -> Result<Optio
     if buffers.rods.is_some() {
         return Ok(None);
     }
-    let capsules = maker.shared.capsules;
+    let (colliders, fields) = (maker.shared.colliders, maker.shared.fields);
     let specialization = Specialization::new()
         .constant("CHUNK", CHUNK)
         .constant("LENGTHS", params.length_iterations)
         .constant("LOCAL", params.local_iterations_of(buffers.strands.shape.vertices))
-        .feature("capsules", capsules.is_some())
+        .feature("capsules", colliders.is_some())
+        .feature("fields", fields.is_some())
         .feature("global_shape", params.has_global_shape());
     let mut resources: Vec<(&str, Binding)> = vec![
         ("rest", buffers.rest.into()),
@@ -34,9 +35,7 @@ pub(crate) fn tressfx(maker: &mut PassMaker, params: &SimParams) -> Result<Optio
         ("positions", buffers.strands.positions.into()),
         ("non_finite", maker.shared.non_finite.into()),
     ];
-    if let Some(buffers) = capsules {
-        resources.push(("capsules", buffers.capsules.into()));
-        resources.push(("capsule_motions", buffers.motions.into()));
-    }
+    resources.extend(colliders.map(|buffer| ("colliders", buffer.colliders.into())));
+    resources.extend(fields.map(|fields| ("fields", fields.into())));
     maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
 }

@@ -18,7 +18,7 @@ mod stand;
 use glam::{DMat3, DQuat, DVec3};
 use tressfx_core::strands::shortest_turn;
 
-pub use contact::{Obstacle, Touch};
+pub use contact::{FieldObstacle, Obstacle, Touch};
 pub use guide::direct_guide;
 pub use rest::RodRest;
 
@@ -79,6 +79,8 @@ pub struct RodStep<'a> {
     pub tip: Option<TipHold>,
     /// What it may touch.
     pub obstacles: &'a [Obstacle],
+    /// Signed distance fields that it may touch.
+    pub fields: &'a [FieldObstacle<'a>],
     /// Coefficient of Coulomb friction.
     pub friction: f64,
     /// The most rounds of Newton's method.
@@ -101,6 +103,7 @@ impl Default for RodStep<'_> {
             root_displacement: DVec3::ZERO,
             tip: None,
             obstacles: &[],
+            fields: &[],
             friction: 0.0,
             rounds: 2,
         }

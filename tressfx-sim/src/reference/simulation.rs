@@ -6,15 +6,17 @@ use tressfx_core::strands::{Bounds, Strands, relative_to};
 use tressfx_core::view::Pose;
 
 use super::direct::{Rod, RodRest, direct_guide};
+use super::field::{Field, PlacedField};
 use super::{Guide, GuideRoot, RootPlace, follow_strand, roots, tressfx};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
-use crate::collider::CapsuleMotion;
+use crate::collider::{CapsuleMotion, PlacedShape};
 use crate::error::SimError;
 use crate::input::StepInput;
 use crate::params::SimParams;
 use crate::rods::rod_rest;
-use crate::sim::{SectionDesc, StepReport};
+use crate::section_desc::SectionDesc;
+use crate::sim::StepReport;
 use crate::solver::Solver;
 use crate::step::{SectionInfo, Step};
 
@@ -23,6 +25,7 @@ use crate::step::{SectionInfo, Step};
 pub struct Simulation<'a> {
     sections: Vec<Section<'a>>,
     clock: Clock,
+    fields: Vec<Field>,
     non_finite: u64,
 }
 
@@ -57,8 +60,15 @@ impl<'a> Simulation<'a> {
         Ok(Self {
             sections: sections.iter().map(|section| Section::new(section, center)).collect(),
             clock,
+            fields: Vec::new(),
             non_finite: 0,
         })
+    }
+
+    /// The same with fields that colliders may name; one that names another is passed over.
+    #[must_use]
+    pub fn with_fields(self, fields: Vec<Field>) -> Self {
+        Self { fields, ..self }
     }
 
     /// Changes how time is cut.
@@ -82,18 +92,20 @@ impl<'a> Simulation<'a> {
                 section.step = Step::reset(&section.params, &section.info, rotation);
                 section.move_roots();
                 match section.info.solver {
-                    Solver::TressFx => _ = section.positions_step(&[]),
-                    Solver::Direct => _ = section.rods_step(&[]),
+                    Solver::TressFx => _ = section.positions_step(&[], &[]),
+                    Solver::Direct => _ = section.rods_step(&[], &[]),
                 }
             }
             for sub_step in &plan.sub_steps {
                 section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
                 let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
-                let capsules: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
+                let shapes: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
+                let capsules: Vec<_> = shapes.iter().filter_map(capsule).collect();
+                let fields: Vec<_> = shapes.iter().filter_map(|shape| placed_field(&self.fields, shape)).collect();
                 section.move_roots();
                 self.non_finite += match section.info.solver {
-                    Solver::TressFx => section.positions_step(&capsules),
-                    Solver::Direct => section.rods_step(&capsules),
+                    Solver::TressFx => section.positions_step(&capsules, &fields),
+                    Solver::Direct => section.rods_step(&capsules, &fields),
                 };
             }
         }
@@ -140,6 +152,19 @@ impl<'a> Simulation<'a> {
     }
 }
 
+fn capsule((shape, motion): &(PlacedShape, CapsuleMotion)) -> Option<(Capsule, CapsuleMotion)> {
+    match shape {
+        PlacedShape::Capsule(capsule) => Some((*capsule, *motion)),
+        PlacedShape::Field { .. } => None,
+    }
+}
+
+fn placed_field<'a>(fields: &'a [Field], (shape, motion): &(PlacedShape, CapsuleMotion)) -> Option<PlacedField<'a>> {
+    let PlacedShape::Field { index, rotation, translation } = shape else { return None };
+    let (rotation, translation) = (rotation.as_dquat().normalize(), translation.as_dvec3());
+    Some(PlacedField { field: fields.get(*index as usize)?, rotation, translation, motion: *motion })
+}
+
 impl<'a> Section<'a> {
     fn new(desc: &SectionDesc<'a>, center: Vec3) -> Self {
         let strands = desc.strands;
@@ -173,21 +198,21 @@ impl<'a> Section<'a> {
     }
 
     /// A sub-step of positions, or their reset; says how many strands had become non-finite.
-    fn positions_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
+    fn positions_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], fields: &[PlacedField]) -> u64 {
         let mut non_finite = 0;
         self.each_guide(|step, params, index, guide| {
-            non_finite += u64::from(tressfx(step, params, guide, index, capsules));
+            non_finite += u64::from(tressfx(step, params, guide, index, capsules, fields));
         });
         non_finite
     }
 
     /// A sub-step of rods, or their reset; says how many had become non-finite.
-    fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)]) -> u64 {
+    fn rods_step(&mut self, capsules: &[(Capsule, CapsuleMotion)], fields: &[PlacedField]) -> u64 {
         let mut rods = std::mem::take(&mut self.rods);
         let mut non_finite = 0;
         self.each_guide(|step, _, index, guide| {
             let (rest, rod) = &mut rods[index as usize];
-            non_finite += u64::from(direct_guide(step, guide, rest, rod, index, capsules));
+            non_finite += u64::from(direct_guide(step, guide, rest, rod, index, capsules, fields));
         });
         self.rods = rods;
         non_finite

@@ -6,6 +6,7 @@ use glam::DVec3;
 use tressfx_core::shape::Capsule;
 
 use super::Guide;
+use super::field::PlacedField;
 use super::roots::RootMotion;
 use super::vector::{DOWN, NO_LENGTH, direction_or, position, rotate, turned};
 use super::wind::wind_of;
@@ -15,7 +16,7 @@ use crate::step::Step;
 
 /// A sub-step of the method of TressFX, or the reset to the rest pose: positions are integrated and pulled to the global shape
 /// ([`SimParams::global_stiffness`]), iterations of the local shape constraints go from the root to the tip, the wind blows,
-/// iterations of the length constraints move the ends of first all even, then all odd edges, and capsules push vertices out. `strand`
+/// iterations of the length constraints move the ends of first all even, then all odd edges, and capsules and fields push vertices out. `strand`
 /// is the index of the guide, on which its wind depends.
 ///
 /// It is what the porting guide of AMD (2013) and TressFX 4.1 describe, but for what is wrong there: velocity shock comes before the
@@ -30,6 +31,7 @@ pub fn tressfx(
     guide: &mut Guide,
     strand: u32,
     capsules: &[(Capsule, CapsuleMotion)],
+    fields: &[PlacedField],
 ) -> bool {
     let root = guide.root(step);
     if step.reset != 0 {
@@ -44,7 +46,7 @@ pub fn tressfx(
     for _ in 0..params.length_iterations {
         [0, 1].into_iter().for_each(|first| lengths(guide, first));
     }
-    contact::contacts(step, guide, &root, capsules);
+    contact::contacts(step, guide, &root, capsules, fields);
     let finite = guide.positions.iter().all(|point| point.is_finite());
     if !finite {
         rest_pose(guide, &root);

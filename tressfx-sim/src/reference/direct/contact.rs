@@ -10,14 +10,17 @@ use glam::{DMat3, DQuat, DVec3};
 use tressfx_core::shape::Capsule;
 
 use super::{Motion, Rod, outer};
+use crate::reference::field::PlacedField;
 
 /// The stiffness of a contact times the square of the sub-step, over the mass of the vertex.
 const CONTACT: f64 = 100.0;
 /// The stiffness of friction until it yields, as a share of that. With more, what the springs along a strand do to each other
 /// needs many more rounds.
 const GRIP: f64 = 0.01;
-/// There is another round where an edge is deeper than this share of the radius.
+/// There is another round where an edge is deeper than this share of the radius,
 const DEEP: f64 = 0.1;
+/// or, in a field, deeper than so many cells.
+const DEEP_CELLS: f64 = 0.1;
 /// An edge touches between its ends where it is nearer to the axis there than at its ends; in full from this share of the
 /// radius on.
 const NEARER: f64 = 0.1;
@@ -88,6 +91,17 @@ impl Obstacle {
         let normal = if distance > 0.0 { from_axis / distance } else { DVec3::ZERO };
         Near { s, t, normal, gap: distance - self.radius(t) }
     }
+}
+
+/// A signed distance field as a rod meets it in a sub-step. All from the root, on the axes of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldObstacle<'a> {
+    /// The field, at the end of the sub-step.
+    pub placed: PlacedField<'a>,
+    /// Its points were turned during the sub-step,
+    pub rotation: DQuat,
+    /// then moved.
+    pub translation: DVec3,
 }
 
 /// Where an edge is nearest to the axis of a capsule.
@@ -223,6 +237,8 @@ struct Contact {
     point: Point,
     /// How far the spring of friction is stretched, if it does not yield.
     stretch: DVec3,
+    /// Beyond this the edge is deep.
+    deep: f64,
 }
 
 impl Contact {
@@ -249,10 +265,26 @@ impl Motion<'_> {
                 let Near { s, normal, .. } = point.near;
                 let moved = way.to[0].lerp(way.to[1], s) - way.from[0].lerp(way.from[1], s);
                 let stretch = (last.stretch + moved).reject_from_normalized(normal);
-                contacts.push(Contact { obstacle: index, point, stretch });
+                let deep = DEEP * obstacle.radius(point.near.t);
+                contacts.push(Contact { obstacle: index, point, stretch, deep });
             }
         }
+        for (index, field) in self.step.fields.iter().enumerate() {
+            contacts.extend(self.field_touch(rod, edge, self.step.obstacles.len() + index, field));
+        }
         contacts
+    }
+
+    /// The contact of the end of an edge with a field.
+    fn field_touch(&self, rod: &Rod, edge: usize, index: usize, field: &FieldObstacle) -> Option<Contact> {
+        let moved = rod.positions[edge + 1] - (field.rotation * self.before[edge + 1] + field.translation);
+        let last = Some(rod.touches[edge]).filter(|last| last.obstacle == index + 1).unwrap_or_default();
+        let (gap, normal) = field.placed.met_by(rod.positions[edge + 1], moved);
+        let stretched = last.stretch + moved;
+        let stretch = stretched - stretched.dot(normal) * normal;
+        let point = Point { near: Near { s: 1.0, t: 0.0, normal, gap }, weight: 1.0 };
+        let deep = DEEP_CELLS * field.placed.field.grid.cell;
+        (gap < 0.0).then_some(Contact { obstacle: index, point, stretch, deep })
     }
 
     /// What contacts do to an edge.
@@ -289,7 +321,7 @@ impl Motion<'_> {
             normal: near.normal,
             stretch: contact.stretch.clamp_length_max(contact.most_stretch(self.step.friction)),
             is_new: rod.touches[edge].obstacle != obstacle,
-            is_deep: near.gap < -DEEP * self.step.obstacles[contact.obstacle].radius(near.t),
+            is_deep: near.gap < -contact.deep,
         }
     }
 }

@@ -1,16 +1,27 @@
-//! Contact with capsules: `shaders/contact.wgsl`.
+//! Contact with capsules and fields: `shaders/contact.wgsl` and `shaders/field_contact.wgsl`.
 
 use glam::{DVec3, DVec4};
 use tressfx_core::shape::Capsule;
 
 use crate::collider::CapsuleMotion;
 use crate::reference::Guide;
+use crate::reference::field::PlacedField;
 use crate::reference::roots::RootMotion;
 use crate::reference::vector::{direction_or, rotate_back};
 use crate::step::Step;
 
-/// Every vertex that is inside of a capsule is pushed straight out of it, one capsule after the other, and slides on it with friction.
-pub(super) fn contacts(step: &Step, guide: &mut Guide, root: &RootMotion, capsules: &[(Capsule, CapsuleMotion)]) {
+/// How often a point is pushed out of a field.
+const PUSHES: usize = 3;
+
+/// Every vertex that is inside of a capsule is pushed straight out of it, one capsule after the other, and slides on it with friction. Then every vertex that is inside of a
+/// field, or has touched it on its way, is held beside it.
+pub(super) fn contacts(
+    step: &Step,
+    guide: &mut Guide,
+    root: &RootMotion,
+    capsules: &[(Capsule, CapsuleMotion)],
+    fields: &[PlacedField],
+) {
     for i in (0..guide.vertices()).filter(|&i| guide.rest[i].w > 0.0) {
         let mut point = step.in_head(guide.positions[i]);
         let mut displacement = point - step.in_head(guide.previous[i]);
@@ -27,11 +38,42 @@ pub(super) fn contacts(step: &Step, guide: &mut Guide, root: &RootMotion, capsul
                 touched = true;
             }
         }
+        for field in fields {
+            let surface = surface_displacement(step, root, &field.motion, point);
+            let push = beside(field, point, displacement - surface);
+            let size = push.length();
+            if size > 0.0 {
+                displacement = surface + slid(displacement + push - surface, push / size, size, step.friction.into());
+                point += push;
+                touched = true;
+            }
+        }
         if touched {
             guide.positions[i] = step.in_world(point);
             guide.previous[i] = step.in_world(point - displacement);
         }
     }
+}
+
+/// By what a point is pushed that has gone along `way`, as the field sees it, to where it is. It is held where it touches first and goes on along the surface; then it
+/// is pushed out where it is.
+fn beside(field: &PlacedField, point: DVec3, way: DVec3) -> DVec3 {
+    let (mut distance, mut normal) = field.sample(point);
+    if distance >= way.length() {
+        return DVec3::ZERO;
+    }
+    let mut at = point;
+    if let Some((share, _, surface)) = field.first_touch(point, way) {
+        at -= ((1.0 - share) * way.dot(surface)).min(0.0) * surface;
+        (distance, normal) = field.sample(at);
+    }
+    for _ in 0..PUSHES {
+        if distance < 0.0 {
+            at -= distance * normal;
+            (distance, normal) = field.sample(at);
+        }
+    }
+    at - point
 }
 
 /// The displacement of a capsule's surface at a point, without the share of the root's motion that the velocity shock has added

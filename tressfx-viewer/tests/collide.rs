@@ -1,0 +1,99 @@
+//! `--collide`: hair stays outside of the mesh that it is drawn with.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use glam::{DVec3, Vec3};
+use tressfx_asset::mesh::Mesh;
+use tressfx_conformance::solid::Solid;
+
+const GROOM: &str = "sintel_lite/GEO-sintel_hair_emit.002-sintel_hair.tfx";
+
+fn tressfx(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_tressfx")).args(words).output().unwrap()
+}
+
+/// A file to write.
+fn temporary(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("collide");
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.join(name).to_string_lossy().into_owned()
+}
+
+/// The folder of assets; none, visibly, without it.
+fn assets() -> Option<PathBuf> {
+    let folder = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from);
+    if folder.is_none() {
+        tressfx_conformance::suite::say_skipped("Sintel", "TRESSFX_ASSETS is not set");
+    }
+    folder
+}
+
+/// How deep the deepest vertex is inside the mesh at the end of two seconds, when both motions are where they began, as a share of the length of its
+/// strand. Vertices that the file holds, roots and those next to them, do not count.
+fn deepest(assets: &Path, solid: &Solid, motion: &str, solver: &str, collide: &str) -> f64 {
+    let (groom, mesh) = (assets.join(GROOM), assets.join("sintel_lite/sintel.obj"));
+    let out = temporary(&format!("{motion}-{solver}-{collide}.tfx"));
+    let (groom, mesh) = (groom.to_string_lossy(), mesh.to_string_lossy());
+    let words = ["simulate", &groom, "--mesh", &mesh, "--motion", motion, "--solver", solver, "--collide", collide];
+    let done = tressfx(&[&words[..], &["--frames", "120", "--follow", "0", "--out", &out]].concat());
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let pose = tressfx_asset::read(&out).unwrap();
+    let masses = pose.inverse_mass.as_ref().unwrap();
+    let (mut start, mut deepest) = (0, 0.0f64);
+    for &count in &pose.counts {
+        let range = start..start + count as usize;
+        let points: Vec<DVec3> = pose.points[range.clone()].iter().map(|point| Vec3::from(*point).as_dvec3()).collect();
+        let length: f64 = points.windows(2).map(|edge| edge[0].distance(edge[1])).sum();
+        for (point, mass) in points.iter().zip(&masses[range.clone()]) {
+            if *mass > 0.0 {
+                deepest = deepest.max(-solid.distance(*point) / length);
+            }
+        }
+        start = range.end;
+    }
+    deepest
+}
+
+#[test]
+fn sintels_hair_stays_outside_of_her_bust() {
+    let Some(assets) = assets() else { return };
+    let mesh = Mesh::read(assets.join("sintel_lite/sintel.obj")).unwrap();
+    let solid = Solid::new(&mesh.positions, &mesh.indices);
+    for (solver, motion) in [("tressfx", "walk"), ("direct", "shake")] {
+        let deepest = deepest(&assets, &solid, motion, solver, "sdf");
+        println!("{solver}, {motion}: deepest {deepest:.5} of the length of its strand");
+        assert!(deepest < 0.01, "{solver}, {motion}: {deepest}");
+    }
+    let without = deepest(&assets, &solid, "walk", "tressfx", "none");
+    println!("walk, without: deepest {without:.5}");
+    assert!(without > 0.02, "{without}: it is the field that holds it");
+}
+
+#[test]
+fn what_is_collided_with_is_what_was_asked_for() {
+    let passes = |words: &[&str]| {
+        let out = temporary("passes.tfx");
+        let words =
+            [&["simulate", "builtin:long:60:8", "--frames", "1", "--print-passes", "--out", &out], words].concat();
+        let done = tressfx(&words);
+        assert!(done.status.success(), "{words:?}: {}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).unwrap()
+    };
+    let [sdf, capsules, none] =
+        ["sdf", "capsules", "none"].map(|collide| passes(&["--solver", "tressfx", "--collide", collide]));
+    assert!(sdf.contains("hair.sim.field_sign") && sdf.contains("fields (read)"), "{sdf}");
+    assert!(!capsules.contains("field") && capsules.contains("colliders (read)"), "{capsules}");
+    assert!(!none.contains("field") && !none.contains("colliders"), "{none}");
+    assert_eq!(passes(&["--solver", "tressfx"]), capsules);
+
+    let out = temporary("no-mesh.tfx");
+    let groom = temporary("groom.tfx");
+    assert!(tressfx(&["convert", "builtin:long:20:8", &groom]).status.success());
+    let error = tressfx(&["simulate", &groom, "--collide", "sdf", "--out", &out]);
+    let said = String::from_utf8_lossy(&error.stderr).into_owned();
+    assert!(
+        !error.status.success() && said.contains("there is no mesh to collide with; name one with --mesh"),
+        "{said}"
+    );
+}
