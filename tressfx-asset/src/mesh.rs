@@ -132,7 +132,7 @@ impl Mesh {
 }
 
 /// Normals of vertices from the faces around them, weighted by area; up where a vertex has no face with an area.
-fn vertex_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
+pub(crate) fn vertex_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
     for triangle in indices.as_chunks::<3>().0 {
         let corners = triangle.map(|index| positions[index as usize]);

@@ -3,12 +3,15 @@
 //! Every function does what the kernel of the same name does, with the same [`Step`]; [`follow_strand`] is the part of the
 //! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
+mod bone_roots;
 pub mod direct;
 mod moved;
 mod roots;
 mod simulation;
+mod skin;
 mod tangents;
 mod tressfx;
+mod triangle_roots;
 mod vector;
 mod wind;
 
@@ -17,11 +20,14 @@ use glam::{DVec3, Vec4};
 use crate::step::Step;
 use roots::RootMotion;
 
+pub use bone_roots::bone_roots;
 pub use moved::moved;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
+pub use skin::skin;
 pub use tangents::{follow_strand, tangents};
 pub use tressfx::tressfx;
+pub use triangle_roots::triangle_roots;
 
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]
