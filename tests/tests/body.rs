@@ -260,9 +260,9 @@ fn both_backends_write_the_same_bits_and_the_strands_follow() {
     let options = VulkanOptions { validation: true, ..VulkanOptions::default() };
     for solver in [Solver::TressFx, Solver::Direct] {
         let Some(gpu) = gpu() else { return };
-        let vulkan = VulkanBackend::new(&options).unwrap();
+        let vulkan = VulkanBackend::headless_with(&options).unwrap();
         // On GPUs two compilers may round in two ways.
-        let is_exact = vulkan.caps().adapter.contains("llvmpipe");
+        let is_exact = vulkan.caps().is_cpu;
         let mut one = Rig::new(gpu, &strands, &mesh, solver);
         let mut other = Rig::new(Box::new(vulkan), &strands, &mesh, solver);
         for frame in 0..12 {
@@ -363,7 +363,7 @@ fn roots_are_bound_to_the_nearest_sound_triangle_and_what_is_wrong_is_named() {
     let strands = fur(500, 4);
     let report = Binding::of_guides(&strands, &mesh, 0.01).unwrap().report;
     println!("{report:?}");
-    assert!(report.roots == 500 && report.largest < 0.0035 && report.median < report.most && report.degenerate == 0);
+    assert!(report.roots == 500 && report.largest < 0.004 && report.median < report.most && report.degenerate == 0);
     // Triangles without an area are passed over.
     let first = mesh.triangles[0][0];
     mesh.triangles.extend([[first, first, first + 1], [first; 3]]);
