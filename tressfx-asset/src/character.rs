@@ -57,6 +57,17 @@ struct MorphWeights {
     rest: Vec<f64>,
 }
 
+impl From<SkinnedMesh> for Character {
+    /// One without animations, whose joints stay where they are.
+    fn from(mesh: SkinnedMesh) -> Self {
+        let nodes = Nodes::apart(mesh.joints.len().max(1));
+        let joint = |node| Joint { node, inverse_bind: DAffine3::IDENTITY };
+        let joints = (0..mesh.joints.len()).map(joint).collect();
+        let morphs = vec![MorphWeights { node: 0, rest: vec![0.0; mesh.morphs.len()] }];
+        Self { mesh, nodes, joints, morphs, ..Self::default() }
+    }
+}
+
 impl Character {
     /// Reads a character; buffers in other files are found beside it.
     ///

@@ -16,6 +16,7 @@ mod write;
 pub mod bones;
 pub mod builtin;
 pub mod character;
+pub mod grow;
 pub mod hair;
 pub mod mesh;
 pub mod obj;

@@ -7,6 +7,7 @@ use std::path::Path;
 use glam::Vec3;
 use thiserror::Error;
 
+use tressfx_core::body::{BodyError, Influences, SkinnedMesh};
 use tressfx_core::strands::Bounds;
 
 /// A triangle mesh with a normal for every vertex.
@@ -99,6 +100,24 @@ impl Mesh {
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
         self.indices.extend(other.indices.iter().map(|index| index + first));
+    }
+
+    /// The same as the skin of a body whose only joint is `root`.
+    ///
+    /// # Errors
+    /// Arrays that do not fit each other.
+    pub fn skinned(&self, name: &str) -> Result<SkinnedMesh, BodyError> {
+        let mesh = SkinnedMesh {
+            name: name.to_owned(),
+            positions: self.positions.clone(),
+            normals: self.normals.clone(),
+            triangles: self.indices.as_chunks::<3>().0.to_vec(),
+            joints: vec!["root".to_owned()],
+            influences: vec![Influences::rigid(0); self.positions.len()],
+            morphs: Vec::new(),
+        };
+        mesh.check()?;
+        Ok(mesh)
     }
 
     /// The box around it.

@@ -3,14 +3,18 @@
 #![forbid(unsafe_code)]
 
 mod backend;
+mod bind;
+mod body;
 mod both;
 mod camera;
 mod cli;
 mod compare;
 mod convert;
 mod groom;
+mod grow;
 mod hair_output;
 mod info;
+mod info_body;
 mod lod;
 mod motion;
 mod oit;
@@ -43,6 +47,8 @@ fn main() -> ExitCode {
         Command::Render(args) if args.scene.backend == BackendName::Both => both::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Bind(args) => bind::run(&args),
+        Command::Grow(args) => grow::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Adapters => backend::adapters(),
         Command::Compare(args) => compare::run(&args),

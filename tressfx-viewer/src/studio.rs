@@ -57,7 +57,12 @@ impl Studio {
         }
         let mut uploads = PassList::new();
         let opaque: Vec<Mesh> = mesh.into_iter().chain(run.groom.mesh.clone()).collect();
-        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
+        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>();
+        let (mut meshes, mut opaque): (Vec<SceneMesh>, _) = (meshes?, opaque);
+        if let Some(body) = &run.body {
+            meshes.push(body.scene_mesh(backend, &mut uploads)?);
+            opaque.push(body.reached());
+        }
         let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;

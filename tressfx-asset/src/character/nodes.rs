@@ -25,6 +25,12 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
+    /// So many nodes without parents, at the origin.
+    pub(super) fn apart(count: usize) -> Self {
+        let place = Place { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE };
+        Self { rest: vec![place; count], parents: vec![None; count], order: (0..count).collect() }
+    }
+
     /// # Errors
     /// A node with two parents or among its own, and one with numbers that make no place.
     pub(super) fn new(name: &str, document: &Document) -> Result<Self, FileError> {
