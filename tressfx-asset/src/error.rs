@@ -4,6 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 use tressfx_core::asset::{AssetError, AssetProblem};
+use tressfx_core::body::BodyError;
 
 /// An error in a groom file: in one that was read, or in an asset that cannot be written as one.
 #[derive(Debug)]
@@ -28,7 +29,7 @@ pub enum FileErrorKind {
     #[error("{0}")]
     Io(#[source] std::io::Error),
     /// The content is of none of the known formats.
-    #[error("not a groom: neither TressFX text, TressFX 3 or 4 binary, HAIR, nor OBJ lines")]
+    #[error("of no known format: neither TressFX text, TressFX 3 or 4 binary, HAIR, nor OBJ lines")]
     UnknownFormat,
     /// The file ends before the field does.
     #[error("needs {needed} bytes, but the file has only {available} from there")]
@@ -49,6 +50,12 @@ pub enum FileErrorKind {
         /// What the format has there.
         expected: &'static str,
     },
+    /// A mesh whose arrays do not fit each other.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// glTF: the JSON, or what it says.
+    #[error("{0}")]
+    Gltf(String),
     /// OBJ: the line elements do not make strands.
     #[error("{0}")]
     Topology(&'static str),

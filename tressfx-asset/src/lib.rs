@@ -8,15 +8,22 @@
 
 mod binary;
 mod error;
+mod kind;
 mod report;
 mod tokenizer;
 mod write;
 
+pub mod bones;
 pub mod builtin;
+pub mod character;
+pub mod grow;
 pub mod hair;
 pub mod mesh;
 pub mod obj;
+pub mod pc2;
 pub mod text;
+pub mod tfxmesh;
+pub mod tfxskin;
 pub mod tressfx3;
 pub mod tressfx4;
 
@@ -25,6 +32,7 @@ use std::path::Path;
 use tressfx_core::asset::{AssetFormat, HairAsset};
 
 pub use error::{FileError, FileErrorKind};
+pub use kind::FileKind;
 pub use report::{LengthStats, Oddities, Report};
 pub use write::{WriteFormat, dropped_by, write};
 

@@ -7,6 +7,7 @@ use std::path::Path;
 use glam::Vec3;
 use thiserror::Error;
 
+use tressfx_core::body::{BodyError, Influences, SkinnedMesh};
 use tressfx_core::strands::Bounds;
 
 /// A triangle mesh with a normal for every vertex.
@@ -101,6 +102,24 @@ impl Mesh {
         self.indices.extend(other.indices.iter().map(|index| index + first));
     }
 
+    /// The same as the skin of a body whose only joint is `root`.
+    ///
+    /// # Errors
+    /// Arrays that do not fit each other.
+    pub fn skinned(&self, name: &str) -> Result<SkinnedMesh, BodyError> {
+        let mesh = SkinnedMesh {
+            name: name.to_owned(),
+            positions: self.positions.clone(),
+            normals: self.normals.clone(),
+            triangles: self.indices.as_chunks::<3>().0.to_vec(),
+            joints: vec!["root".to_owned()],
+            influences: vec![Influences::rigid(0); self.positions.len()],
+            morphs: Vec::new(),
+        };
+        mesh.check()?;
+        Ok(mesh)
+    }
+
     /// The box around it.
     pub fn bounds(&self) -> Bounds {
         Bounds::of(self.positions.iter().copied())
@@ -132,7 +151,7 @@ impl Mesh {
 }
 
 /// Normals of vertices from the faces around them, weighted by area; up where a vertex has no face with an area.
-fn vertex_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
+pub(crate) fn vertex_normals(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
     for triangle in indices.as_chunks::<3>().0 {
         let corners = triangle.map(|index| positions[index as usize]);

@@ -9,6 +9,7 @@
 
 pub mod asset;
 pub mod backend;
+pub mod body;
 pub mod check;
 mod epoch;
 pub mod error;

@@ -1,5 +1,8 @@
 //! What can go wrong in the simulation.
 
+use tressfx_core::body::BodyError;
+
+use crate::body::MeshVertices;
 use crate::params::ParamError;
 
 /// An error of the simulation.
@@ -62,6 +65,41 @@ pub enum SimError {
         given: usize,
         /// How many the section takes: one a guide, or none.
         expected: usize,
+    },
+    /// A mesh or a pose of it is not sound.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// More joints than kernels can count.
+    #[error("{given} joints, a body may have {most}")]
+    TooManyJoints {
+        /// How many were given.
+        given: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// Another number of joints than the palette has.
+    #[error("{given} joints for a palette of {expected}")]
+    JointCount {
+        /// How many were given.
+        given: usize,
+        /// How many it has.
+        expected: usize,
+    },
+    /// A strand has a joint that is not in the palette.
+    #[error("joint {joint} of a palette of {count}")]
+    NoJoint {
+        /// The joint.
+        joint: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// Vertices of an engine are not those that roots are bound to, or not laid out in whole numbers.
+    #[error("roots are bound to vertex {last} and those before it, but the buffer is {mesh:?}")]
+    MeshVertices {
+        /// The last vertex that a root is bound to.
+        last: u32,
+        /// What was given.
+        mesh: MeshVertices,
     },
     /// The backend could not make something.
     #[error(transparent)]

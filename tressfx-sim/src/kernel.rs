@@ -2,6 +2,7 @@
 //!
 //! What the kernels of both solvers ask for, and the stages of `tressfx`, are in modules without an entry point.
 
+pub(crate) mod bone_roots;
 pub(crate) mod direct;
 pub(crate) mod field_bounds;
 pub(crate) mod field_crossings;
@@ -12,8 +13,10 @@ pub(crate) mod field_sign;
 pub(crate) mod field_splat;
 pub(crate) mod moved;
 pub(crate) mod roots;
+pub(crate) mod skin;
 pub(crate) mod tangents;
 pub(crate) mod tressfx;
+pub(crate) mod triangle_roots;
 
 use std::sync::Arc;
 
@@ -39,12 +42,14 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("field_side", include_str!("../shaders/field_side.wgsl")),
     ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
+    ("joint_matrix", include_str!("../shaders/joint_matrix.wgsl")),
     ("lengths", include_str!("../shaders/lengths.wgsl")),
     ("local_shape", include_str!("../shaders/local_shape.wgsl")),
     ("rod", include_str!("../shaders/rod.wgsl")),
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
     ("rod_touch", include_str!("../shaders/rod_touch.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
+    ("root_frame", include_str!("../shaders/root_frame.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("substitute", include_str!("../shaders/substitute.wgsl")),
     ("symmetric", include_str!("../shaders/symmetric.wgsl")),

@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bending_length;
+pub mod body;
 mod buffers;
 mod clock;
 mod collider;

@@ -3,6 +3,7 @@
 //! Every function does what the kernel of the same name does, with the same [`Step`]; [`follow_strand`] is the part of the
 //! kernel `tangents` that places follow strands, and [`direct_guide`](direct::direct_guide) is what `direct` does. Arrays are strand-major, as in [`Strands`](tressfx_core::strands::Strands).
 
+mod bone_roots;
 pub mod direct;
 pub mod field;
 mod field_bounds;
@@ -15,8 +16,10 @@ mod field_splat;
 mod moved;
 mod roots;
 mod simulation;
+mod skin;
 mod tangents;
 mod tressfx;
+mod triangle_roots;
 mod vector;
 mod wind;
 
@@ -25,6 +28,7 @@ use glam::{DVec3, Vec4};
 use crate::step::Step;
 use roots::RootMotion;
 
+pub use bone_roots::bone_roots;
 pub use field_bounds::field_bounds;
 pub use field_crossings::field_crossings;
 pub use field_flood::field_flood;
@@ -35,8 +39,10 @@ pub use field_splat::field_splat;
 pub use moved::moved;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
+pub use skin::skin;
 pub use tangents::{follow_strand, tangents};
 pub use tressfx::tressfx;
+pub use triangle_roots::triangle_roots;
 
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]

@@ -10,9 +10,12 @@ use tressfx_core::shader::Language;
 use tressfx_render::Look;
 use tressfx_sim::{Preset, Solver};
 
+use crate::bind::Bind;
+use crate::body::BodyArgs;
 use crate::camera::Camera;
 use crate::collide::Collision;
 use crate::develop::Develop;
+use crate::grow::Grow;
 use crate::lod::Lod;
 use crate::oit::Oit;
 use crate::shadows::Shadows;
@@ -33,6 +36,10 @@ pub(crate) enum Command {
     Render(Box<Render>),
     /// Simulate a groom and write its pose as a 4.x .tfx file
     Simulate(Simulate),
+    /// Say how far the roots of a groom are from the skin of a body, to which they would be bound
+    Bind(Bind),
+    /// Grow hair on a body, evenly by area, and write it as a 4.x .tfx file
+    Grow(Grow),
     /// Convert a groom file; the ending of OUT chooses the format (.tfx: 4.x binary, .txt: 2013 text)
     Convert(Convert),
     /// Say how far two pictures differ: FLIP, PSNR, largest step, share of pixels
@@ -49,7 +56,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct Info {
-    /// Files, or `builtin:NAME[:STRANDS[:VERTICES]]`
+    /// Grooms, characters (.glb, .gltf), .tfxmesh, .tfxbone, .tfxskin, .pc2; or `builtin:NAME[:STRANDS[:VERTICES]]`
     #[arg(required = true, value_name = "FILE")]
     pub(crate) grooms: Vec<String>,
     /// Write JSON: an array with one object a file
@@ -99,6 +106,8 @@ pub(crate) struct Scene {
     /// How the head moves
     #[arg(long, value_enum, default_value_t = Motion::Still)]
     pub(crate) motion: Motion,
+    #[command(flatten)]
+    pub(crate) body: BodyArgs,
     /// Parameters of simulation and look
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
@@ -198,7 +207,7 @@ pub(crate) struct Render {
     #[arg(long)]
     pub(crate) strict: bool,
     /// Draw with the reference renderer: rays through fibres as solids, on the CPU
-    #[arg(long)]
+    #[arg(long, conflicts_with = "character")]
     pub(crate) reference: bool,
     /// Rays a pixel of the reference renderer
     #[arg(long, default_value = "64", value_name = "N", requires = "reference")]
@@ -375,7 +384,7 @@ fn looks() -> impl TypedValueParser<Value = Look> {
     PossibleValuesParser::new(names).try_map(|name| name.parse::<Look>())
 }
 
-fn share(text: &str) -> Result<f32, String> {
+pub(crate) fn share(text: &str) -> Result<f32, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         Ok(share) => Err(format!("{share} is not between 0 and 1")),
@@ -383,7 +392,7 @@ fn share(text: &str) -> Result<f32, String> {
     }
 }
 
-fn vector(text: &str) -> Result<Vec3, String> {
+pub(crate) fn vector(text: &str) -> Result<Vec3, String> {
     numbers(text).map(Vec3::from_array)
 }
 

@@ -5,10 +5,14 @@ use tressfx_asset::Report;
 
 use crate::cli::Info;
 use crate::groom;
+use crate::info_body;
 use crate::say::say;
 
 /// Reports every file, as text or as a JSON array.
 pub(crate) fn run(args: &Info) -> Result<()> {
+    if let Some(files) = info_body::files(&args.grooms)? {
+        return info_body::run(files, args.json);
+    }
     let reports = args.grooms.iter().map(|name| Ok(Report::new(&groom::asset(name)?)?)).collect::<Result<Vec<_>>>()?;
     if args.json {
         say(serde_json::to_string_pretty(&reports)?)?;

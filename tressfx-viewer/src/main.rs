@@ -3,6 +3,8 @@
 #![forbid(unsafe_code)]
 
 mod backend;
+mod bind;
+mod body;
 mod both;
 mod camera;
 mod cli;
@@ -11,8 +13,10 @@ mod compare;
 mod convert;
 mod develop;
 mod groom;
+mod grow;
 mod hair_output;
 mod info;
+mod info_body;
 mod light_params;
 mod lod;
 mod motion;
@@ -46,6 +50,8 @@ fn main() -> ExitCode {
         Command::Render(args) if args.scene.backend == BackendName::Both => both::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::Bind(args) => bind::run(&args),
+        Command::Grow(args) => grow::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Adapters => backend::adapters(),
         Command::Compare(args) => compare::run(&args),

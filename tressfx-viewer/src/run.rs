@@ -15,6 +15,7 @@ use tressfx_sim::metrics::{self, EdgeError};
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
 use crate::backend;
+use crate::body::Body;
 use crate::cli::{self, BackendName};
 use crate::groom::Groom;
 use crate::motion;
@@ -32,6 +33,8 @@ pub(crate) struct Run {
     pub(crate) params: Params,
     pub(crate) backend: Box<dyn tressfx_core::backend::Run>,
     pub(crate) sim: HairSim,
+    /// What the hair grows on, if it moves.
+    pub(crate) body: Option<Body>,
     pub(crate) times: PassTimes,
     pub(crate) trace: Trace,
     backend_name: &'static str,
@@ -112,7 +115,9 @@ impl Run {
             .enumerate()
             .map(|(index, strands)| {
                 let solver = solver(args, strands, backend.caps());
-                SectionDesc::new(strands, material(args, strands, params.sim(index).clone())).with_solver(solver)
+                let desc = SectionDesc::new(strands, material(args, strands, params.sim(index).clone()));
+                let desc = desc.with_solver(solver);
+                if args.body.is_given() { desc.with_own_roots() } else { desc }
             })
             .collect();
         let meshes: Vec<Mesh> = args.collision.mesh()?.into_iter().chain(groom.mesh.clone()).collect();
@@ -126,6 +131,7 @@ impl Run {
                 HairSim::with_fields(&mut *backend, &mut uploads, &sections, colliders.len(), fields)?
             }
         };
+        let body = Body::read(&args.body, &mut *backend, &mut uploads, &sim, &groom.sections)?;
         backend.run(&uploads)?;
         // A frame of any length is simulated whole, with what the one before it left over.
         let longest = 1.0 / args.fps + params.clock.sub_step;
@@ -141,7 +147,7 @@ impl Run {
             BackendName::Wgpu | BackendName::Both => "wgpu",
         };
         let (times, trace) = (PassTimes::default(), Trace::new());
-        Ok(Self { groom, params, backend, sim, times, trace, backend_name, frame: 0, wind, meshes, fields, colliders })
+        Ok(Self { groom, params, backend, sim, body, times, trace, backend_name, frame: 0, wind, meshes, fields, colliders })
     }
 
     /// How many frames come out: of no simulated ones, the rest pose.
@@ -153,7 +159,14 @@ impl Run {
     pub(crate) fn step(&mut self, args: &cli::Scene) -> Result<PassList> {
         let mut list = PassList::new();
         if args.frames == 0 {
+            if let Some(body) = &mut self.body {
+                body.pose(&mut list, &mut self.sim, 0.0)?;
+            }
             self.sim.step(&mut list, &StepInput::new(0.0, self.head(args)))?;
+            return Ok(list);
+        }
+        if self.body.is_some() {
+            self.step_with_body(args, &mut list)?;
             return Ok(list);
         }
         let parts = (POSES_A_SECOND / args.fps).ceil().clamp(1.0, POSES_A_SECOND);
@@ -164,6 +177,22 @@ impl Run {
         self.sim.step(&mut list, &StepInput { wind: self.wind, ..input })?;
         self.frame += 1;
         Ok(list)
+    }
+
+    /// Records the next frame of hair on a body, which is posed anew for every sub-step: a fast head does not leave its roots behind.
+    fn step_with_body(&mut self, args: &cli::Scene, list: &mut PassList) -> Result<()> {
+        let parts = (1.0 / (args.fps * self.params.clock.sub_step)).round().clamp(1.0, POSES_A_SECOND);
+        for part in 1..=parts as u32 {
+            let frames = f64::from(self.frame) + f64::from(part) / parts;
+            if let Some(body) = &mut self.body {
+                body.pose(list, &mut self.sim, frames / args.fps)?;
+            }
+            let input = StepInput::new(1.0 / (args.fps * parts), self.head_at(args, frames));
+            let input = StepInput { wind: self.wind, ..input.with_colliders(&self.colliders) };
+            self.sim.step(list, &input)?;
+        }
+        self.frame += 1;
+        Ok(())
     }
 
     /// Where the head is in the frame that was recorded last.

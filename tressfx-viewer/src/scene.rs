@@ -88,6 +88,8 @@ mod uniform {
 #[derive(Debug)]
 pub struct SceneMesh {
     vertices: BufferId,
+    /// Whether another part of the program frees the vertices.
+    is_borrowed: bool,
     indices: BufferId,
     uniform: BufferId,
     pub(crate) index_count: u32,
@@ -198,12 +200,36 @@ impl SceneMesh {
         let mut buffer = |label, bytes: usize| backend.create_buffer(&BufferDesc::storage(label, bytes.max(32) as u64));
         let made = Self {
             vertices: buffer("viewer.scene.vertices", size_of_val(&vertices[..]))?,
+            is_borrowed: false,
             indices: buffer("viewer.scene.indices", size_of_val(&mesh.indices[..]))?,
             uniform: uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?,
             index_count: mesh.indices.len() as u32,
         };
         list.upload(made.vertices, 0, &vertices);
         list.upload(made.indices, 0, &mesh.indices);
+        Ok(made)
+    }
+
+    /// A mesh whose vertices something else writes: two `vec4<f32>` each, position and normal. They are not freed with it.
+    ///
+    /// # Errors
+    /// What the backend says when it cannot make a buffer of that size.
+    pub fn of_vertices(
+        backend: &mut dyn Backend,
+        list: &mut PassList,
+        vertices: BufferId,
+        triangles: &[[u32; 3]],
+    ) -> Result<Self> {
+        let indices = triangles.as_flattened();
+        let bytes = size_of_val(indices).max(32) as u64;
+        let made = Self {
+            vertices,
+            is_borrowed: true,
+            indices: backend.create_buffer(&BufferDesc::storage("viewer.scene.indices", bytes))?,
+            uniform: uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?,
+            index_count: indices.len() as u32,
+        };
+        list.upload(made.indices, 0, indices);
         Ok(made)
     }
 
@@ -224,7 +250,8 @@ impl SceneMesh {
 
     /// Frees it.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        [self.vertices, self.indices, self.uniform].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        let own = (!self.is_borrowed).then_some(self.vertices);
+        own.into_iter().chain([self.indices, self.uniform]).for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 

@@ -58,8 +58,13 @@ impl Studio {
             targets = targets.velocity(texture("velocity", VELOCITY_FORMAT)?);
         }
         let mut uploads = PassList::new();
-        let opaque = run.meshes.clone();
-        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>()?;
+        let mut opaque = run.meshes.clone();
+        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>();
+        let mut meshes: Vec<SceneMesh> = meshes?;
+        if let Some(body) = &run.body {
+            meshes.push(body.scene_mesh(backend, &mut uploads)?);
+            opaque.push(body.reached());
+        }
         let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
         for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
             let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
