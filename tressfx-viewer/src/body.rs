@@ -8,10 +8,11 @@ use tressfx_asset::character::{Character, read_bytes};
 use tressfx_asset::mesh::Mesh;
 use tressfx_asset::{FileKind, bones, tfxmesh};
 use tressfx_core::backend::Backend;
-use tressfx_core::body::MeshPose;
+use tressfx_core::body::{MeshPose, SkinnedMesh};
 use tressfx_core::pass::PassList;
 use tressfx_core::strands::Strands;
 use tressfx_sim::body::{Binding, BoneRoots, Skinning, TriangleRoots};
+use tressfx_sim::field::{FieldDesc, VertexBuffer};
 use tressfx_sim::{HairSim, reference};
 use tressfx_viewer::scene::SceneMesh;
 
@@ -76,21 +77,27 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// The body that was asked for, with the roots of all sections on it.
-    pub(crate) fn read(
+    /// The body that was asked for, without hair.
+    pub(crate) fn read(args: &BodyArgs, backend: &mut dyn Backend, list: &mut PassList) -> Result<Option<Self>> {
+        let Some(path) = &args.character else { return Ok(None) };
+        let character = character(path)?;
+        let animation = args.animation.as_deref().map(|name| find(&character, name)).transpose()?;
+        let skinning = Skinning::new(backend, list, &character.mesh, false)?;
+        Ok(Some(Self { character, animation, skinning, roots: Vec::new() }))
+    }
+
+    /// Puts the roots of all sections on it.
+    pub(crate) fn bind(
+        &mut self,
         args: &BodyArgs,
         backend: &mut dyn Backend,
         list: &mut PassList,
         sim: &HairSim,
         sections: &[Strands],
-    ) -> Result<Option<Self>> {
-        let Some(path) = &args.character else { return Ok(None) };
-        let character = character(path)?;
-        let animation = args.animation.as_deref().map(|name| find(&character, name)).transpose()?;
-        let skinning = Skinning::new(backend, list, &character.mesh, false)?;
-        let mut roots = Vec::new();
+    ) -> Result<()> {
+        let Self { character, skinning, .. } = self;
         for (section, strands) in sections.iter().enumerate() {
-            roots.push(match &args.bones {
+            self.roots.push(match &args.bones {
                 Some(path) => {
                     let name = path.display().to_string();
                     let data = std::fs::read(path).with_context(|| name.clone())?;
@@ -99,13 +106,26 @@ impl Body {
                     Roots::Bones(BoneRoots::new(backend, list, (sim, section), strands, &of, palette)?)
                 }
                 None => {
-                    let binding = Binding::of_guides(strands, &character.mesh, MOST * size(&character))?;
+                    let binding = Binding::of_guides(strands, &character.mesh, MOST * size(character))?;
                     let vertices = skinning.mesh_vertices();
                     Roots::Triangles(TriangleRoots::new(backend, list, sim, section, &binding, vertices)?)
                 }
             });
         }
-        Ok(Some(Self { character, animation, skinning, roots }))
+        Ok(())
+    }
+
+    /// Whether it is another one from frame to frame.
+    pub(crate) fn moves(&self) -> bool {
+        self.animation.is_some_and(|index| self.character.animations[index].seconds > 0.0)
+    }
+
+    /// What a field of it, as it is posed, is made of.
+    pub(crate) fn field(&self) -> FieldDesc<'_> {
+        let SkinnedMesh { positions, triangles, .. } = &self.character.mesh;
+        // A position and a normal of four floats each.
+        let vertices = VertexBuffer { buffer: self.skinning.vertices(), first: 0, stride: 8 };
+        FieldDesc::new(positions, triangles.as_flattened()).with_vertices(vertices)
     }
 
     /// Poses it as it is after `seconds`, with its roots.

@@ -8,8 +8,11 @@ use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::Backend;
 use tressfx_core::pass::PassList;
 use tressfx_core::shape::Capsule;
+use tressfx_core::strands::Bounds;
 use tressfx_sim::Collider;
 use tressfx_sim::field::{FieldDesc, Fields};
+
+use crate::body::Body;
 
 /// Nodes of a field along the longest side.
 const NODES: u32 = 96;
@@ -54,24 +57,31 @@ impl Collision {
         Collider::all_with_head(&capsules)
     }
 
-    /// The field of the meshes, as one body, if it was asked for.
+    /// The fields that were asked for: first that of the character, then that of the meshes, as one body.
     pub(crate) fn fields(
         &self,
         backend: &mut dyn Backend,
         uploads: &mut PassList,
         meshes: &[Mesh],
+        body: Option<&Body>,
     ) -> Result<Option<Fields>> {
         if self.collide != Collide::Sdf {
             return Ok(None);
         }
-        if meshes.is_empty() {
-            bail!("--collide sdf: there is no mesh to collide with; name one with --mesh");
+        if meshes.is_empty() && body.is_none() {
+            bail!("--collide sdf: there is no mesh to collide with; name one with --mesh or --character");
         }
-        let mut body = Mesh::default();
-        meshes.iter().for_each(|mesh| body.append(mesh));
-        let bounds = body.bounds();
-        let cell = (bounds.max - bounds.min).max_element() / (NODES - PADDING) as f32;
-        let desc = FieldDesc::new(&body.positions, &body.indices).with_nodes(NODES).with_margin(MARGIN * cell);
-        Ok(Some(Fields::new(backend, uploads, &[desc])?))
+        let mut mesh = Mesh::default();
+        meshes.iter().for_each(|part| mesh.append(part));
+        let still = (!meshes.is_empty()).then(|| FieldDesc::new(&mesh.positions, &mesh.indices));
+        let descs: Vec<_> = body.map(Body::field).into_iter().chain(still).map(fine).collect();
+        Ok(Some(Fields::new(backend, uploads, &descs)?))
     }
+}
+
+/// As fine as fields of the program are.
+fn fine(desc: FieldDesc) -> FieldDesc {
+    let bounds = Bounds::of(desc.positions.iter().copied());
+    let cell = (bounds.max - bounds.min).max_element() / (NODES - PADDING) as f32;
+    desc.with_nodes(NODES).with_margin(MARGIN * cell)
 }

@@ -123,15 +123,20 @@ impl Run {
         let meshes: Vec<Mesh> = args.collision.mesh()?.into_iter().chain(groom.mesh.clone()).collect();
         let mut colliders = args.collision.capsules(&groom.capsules, &params.capsule);
         let mut uploads = PassList::new();
-        let fields = args.collision.fields(&mut *backend, &mut uploads, &meshes)?;
+        let mut body = Body::read(&args.body, &mut *backend, &mut uploads)?;
+        let fields = args.collision.fields(&mut *backend, &mut uploads, &meshes, body.as_ref())?;
         let mut sim = match &fields {
             None => HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?,
             Some(fields) => {
-                colliders.push(Collider::with_head(fields.shape(0)?));
+                for index in 0..fields.len() {
+                    colliders.push(Collider::with_head(fields.shape(index)?));
+                }
                 HairSim::with_fields(&mut *backend, &mut uploads, &sections, colliders.len(), fields)?
             }
         };
-        let body = Body::read(&args.body, &mut *backend, &mut uploads, &sim, &groom.sections)?;
+        if let Some(body) = &mut body {
+            body.bind(&args.body, &mut *backend, &mut uploads, &sim, &groom.sections)?;
+        }
         backend.run(&uploads)?;
         // A frame of any length is simulated whole, with what the one before it left over.
         let longest = 1.0 / args.fps + params.clock.sub_step;
@@ -147,7 +152,21 @@ impl Run {
             BackendName::Wgpu | BackendName::Both => "wgpu",
         };
         let (times, trace) = (PassTimes::default(), Trace::new());
-        Ok(Self { groom, params, backend, sim, body, times, trace, backend_name, frame: 0, wind, meshes, fields, colliders })
+        Ok(Self {
+            groom,
+            params,
+            backend,
+            sim,
+            body,
+            times,
+            trace,
+            backend_name,
+            frame: 0,
+            wind,
+            meshes,
+            fields,
+            colliders,
+        })
     }
 
     /// How many frames come out: of no simulated ones, the rest pose.
@@ -187,11 +206,27 @@ impl Run {
             if let Some(body) = &mut self.body {
                 body.pose(list, &mut self.sim, frames / args.fps)?;
             }
+            self.refit(list)?;
             let input = StepInput::new(1.0 / (args.fps * parts), self.head_at(args, frames));
             let input = StepInput { wind: self.wind, ..input.with_colliders(&self.colliders) };
             self.sim.step(list, &input)?;
         }
         self.frame += 1;
+        Ok(())
+    }
+
+    /// Makes the field of a body that has moved anew.
+    fn refit(&mut self, list: &mut PassList) -> Result<()> {
+        let Some(fields) = &mut self.fields else { return Ok(()) };
+        if self.body.as_ref().is_some_and(Body::moves) {
+            fields.mark_changed(0)?;
+        }
+        fields.record(list);
+        // A field that was made anew has another shape: what sleeps on it wakes.
+        let first = self.colliders.len() - fields.len();
+        for (index, collider) in self.colliders[first..].iter_mut().enumerate() {
+            *collider = Collider::with_head(fields.shape(index)?);
+        }
         Ok(())
     }
 
