@@ -41,7 +41,8 @@ fn patch() -> SkinnedMesh {
             mesh.positions.push(on_patch(u, v));
             let along = [on_patch(u + 1e-3, v) - on_patch(u, v), on_patch(u, v + 1e-3) - on_patch(u, v)];
             mesh.normals.push(along[1].cross(along[0]).normalize());
-            let pairs = [(0, (1.0 - 2.0 * u).max(0.0)), (1, 1.0 - (2.0 * u - 1.0).abs()), (2, (2.0 * u - 1.0).max(0.0))];
+            let pairs =
+                [(0, (1.0 - 2.0 * u).max(0.0)), (1, 1.0 - (2.0 * u - 1.0).abs()), (2, (2.0 * u - 1.0).max(0.0))];
             mesh.influences.push(Influences::strongest(&pairs).unwrap());
             let offset = |position, normal| MorphOffset { vertex, position, normal };
             mesh.morphs[0].offsets.push(offset(Vec3::Y * 0.3 * (1.0 - u) * v, Vec3::new(0.1, 0.0, -0.1 * u)));
@@ -127,8 +128,7 @@ impl Rig {
         let vertices = skinning.mesh_vertices();
         let triangles = TriangleRoots::new(&mut *backend, &mut list, &sim, 0, &binding, vertices).unwrap();
         let of = influences(strands, mesh);
-        let bones =
-            BoneRoots::new(&mut *backend, &mut list, (&sim, 0), strands, &of, skinning.palette()).unwrap();
+        let bones = BoneRoots::new(&mut *backend, &mut list, (&sim, 0), strands, &of, skinning.palette()).unwrap();
         backend.run(&list).unwrap();
         Self { backend, sim, skinning, binding, triangles, bones }
     }
@@ -281,7 +281,10 @@ fn both_backends_write_the_same_bits_and_the_strands_follow() {
             let buffers = rig.sim.buffers()[0];
             rig.read::<[f32; 4]>(buffers.positions, 1800)
         });
-        assert!(!is_exact || (vertices[0] == vertices[1] && targets[0] == targets[1] && hair[0] == hair[1]), "{solver:?}");
+        assert!(
+            !is_exact || (vertices[0] == vertices[1] && targets[0] == targets[1] && hair[0] == hair[1]),
+            "{solver:?}"
+        );
         // Roots are where the skin is.
         let center = one.sim.center().as_dvec3();
         for guide in 0..300 {
@@ -388,7 +391,8 @@ fn poses_and_roots_that_do_not_fit_are_refused() {
     let (mesh, strands) = (patch(), fur(50, 4));
     let (mut backend, mut list) = (NullBackend::default(), PassList::new());
     let own = SectionDesc::new(&strands, SimParams::default()).with_own_roots();
-    let sim = HairSim::new(&mut backend, &mut list, &[own, SectionDesc::new(&strands, SimParams::default())], 0).unwrap();
+    let sim =
+        HairSim::new(&mut backend, &mut list, &[own, SectionDesc::new(&strands, SimParams::default())], 0).unwrap();
     let mut skinning = Skinning::new(&mut backend, &mut list, &mesh, false).unwrap();
     let count = |pose: MeshPose, skinning: &mut Skinning, list: &mut PassList| skinning.pose(list, &pose).unwrap_err();
     let rest = mesh.bind_pose();

@@ -43,7 +43,11 @@ impl StrandBones {
                 let bone = of.joints[slot] as usize;
                 let Some(joint) = known[bone] else {
                     let field = format!("bone {:?} of strand {strand}", self.bones[bone]);
-                    return Err(FileError::new(file, field, AssetProblem::out_of_range("absent", "a joint of the mesh")));
+                    return Err(FileError::new(
+                        file,
+                        field,
+                        AssetProblem::out_of_range("absent", "a joint of the mesh"),
+                    ));
                 };
                 found.joints[slot] = joint as u32;
             }

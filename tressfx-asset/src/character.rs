@@ -19,8 +19,8 @@ use glam::{Affine3A, DAffine3};
 use tressfx_core::body::{MeshPose, SkinnedMesh};
 
 pub use animation::Animation;
-pub use gltf::read_bytes;
 pub(crate) use gltf::is_like;
+pub use gltf::read_bytes;
 
 use crate::{FileError, FileErrorKind};
 use animation::Moved;

@@ -132,7 +132,9 @@ pub fn roots(mesh: &SkinnedMesh, density: f64, seed: u64) -> Result<Vec<SkinPlac
         let (one, other) = (random.random::<f64>().sqrt(), random.random::<f64>());
         let shares = [1.0 - one, one * (1.0 - other), one * other];
         let corners = mesh.triangles[triangle];
-        let sum = |of: &[Vec3]| corners.iter().zip(shares).map(|(&corner, share)| of[corner as usize].as_dvec3() * share).sum::<DVec3>();
+        let sum = |of: &[Vec3]| {
+            corners.iter().zip(shares).map(|(&corner, share)| of[corner as usize].as_dvec3() * share).sum::<DVec3>()
+        };
         SkinPlace { triangle, position: sum(&mesh.positions), normal: sum(&mesh.normals).normalize_or(DVec3::Y) }
     };
     let candidates: Vec<SkinPlace> = (0..count).map(candidate).collect();
@@ -145,7 +147,9 @@ impl Growth {
         let share = |value: f32| (0.0..=1.0).contains(&value);
         match self {
             Self { density, .. } if !(*density > 0.0 && density.is_finite()) => wrong("density", *density, "above 0"),
-            Self { length, .. } if !(*length > 0.0 && length.is_finite()) => wrong("length", (*length).into(), "above 0"),
+            Self { length, .. } if !(*length > 0.0 && length.is_finite()) => {
+                wrong("length", (*length).into(), "above 0")
+            }
             Self { variation, .. } if !share(*variation) => wrong("variation", (*variation).into(), "from 0 to 1"),
             Self { lie, .. } if !share(*lie) => wrong("lie", (*lie).into(), "from 0 to 1"),
             Self { noise, .. } if !share(*noise) => wrong("noise", (*noise).into(), "from 0 to 1"),

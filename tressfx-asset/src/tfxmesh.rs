@@ -34,7 +34,8 @@ impl<'a> Reader<'a> {
     fn expect(&mut self, field: &str) -> Result<Words<'a>, FileError> {
         let place = self.lines.place();
         let available = 0;
-        self.line().ok_or_else(|| place.error(self.name, field, crate::FileErrorKind::Truncated { needed: 1, available }))
+        self.line()
+            .ok_or_else(|| place.error(self.name, field, crate::FileErrorKind::Truncated { needed: 1, available }))
     }
 
     /// A line of a keyword and a count.
@@ -99,7 +100,8 @@ pub fn read(name: &str, data: &[u8]) -> Result<SkinnedMesh, FileError> {
 }
 
 fn vertex(reader: &Reader<'_>, line: &mut Words<'_>, field: &str, mesh: &mut SkinnedMesh) -> Result<(), FileError> {
-    let vector = |line: &mut Words<'_>| Ok::<_, FileError>(Vec3::new(line.f32(field)?, line.f32(field)?, line.f32(field)?));
+    let vector =
+        |line: &mut Words<'_>| Ok::<_, FileError>(Vec3::new(line.f32(field)?, line.f32(field)?, line.f32(field)?));
     mesh.positions.push(vector(line)?);
     mesh.normals.push(vector(line)?.normalize_or(Vec3::Y));
     let joints = mesh.joints.len();

@@ -72,8 +72,7 @@ pub fn read(name: &str, data: &[u8]) -> Result<StrandTriangles, FileError> {
 fn root(bytes: Bytes<'_>, at: usize, strand: usize) -> Result<TriangleRoot, FileError> {
     let field = format!("barycentric coordinates of strand {strand}");
     let at_of = |corner: usize| at + 8 + 4 * corner;
-    let barycentric =
-        [bytes.f32(&field, at_of(0))?, bytes.f32(&field, at_of(1))?, bytes.f32(&field, at_of(2))?];
+    let barycentric = [bytes.f32(&field, at_of(0))?, bytes.f32(&field, at_of(1))?, bytes.f32(&field, at_of(2))?];
     let sum: f32 = barycentric.iter().sum();
     if (sum - 1.0).abs() > ROUNDING {
         return Err(bytes.error(&field, at_of(0), AssetProblem::out_of_range(sum, "a sum of 1")));

@@ -79,7 +79,8 @@ fn a_morphing_cube_reads_its_buffer_and_bends() {
     let cube = Character::read(&path).unwrap();
     assert_eq!((cube.mesh.positions.len(), cube.mesh.morphs.len(), cube.mesh.joints.len()), (24, 2, 1));
     let square = cube.animation("Square").unwrap();
-    let weights: Vec<_> = (0..=40).map(|i| cube.pose(Some(square), square.seconds * f64::from(i) / 40.0).morphs).collect();
+    let weights: Vec<_> =
+        (0..=40).map(|i| cube.pose(Some(square), square.seconds * f64::from(i) / 40.0).morphs).collect();
     assert!(weights.iter().all(|w| w.iter().all(|w| (-1e-6..=1.0 + 1e-6).contains(w))));
     assert!((0..2).all(|morph| weights.iter().any(|w| w[morph] > 0.9)), "{weights:?}");
     // Its node enlarges it a hundred times: what is shown is what hair is bound to.
@@ -115,7 +116,8 @@ fn the_smallest_skin_bends_at_its_joint() {
 #[ignore = "reads the folder that TRESSFX_ASSETS names"]
 fn ratboy_has_bones_for_every_strand_and_a_skinned_body() {
     let at = |name: &str| std::fs::read(folder().join("tressfx41_ratboy").join(name)).unwrap();
-    for (name, strands, normalised) in [("Ratboy_mohawk.tfxbone", 2228, None), ("Ratboy_short.tfxbone", 37747, Some(1))] {
+    for (name, strands, normalised) in [("Ratboy_mohawk.tfxbone", 2228, None), ("Ratboy_short.tfxbone", 37747, Some(1))]
+    {
         let data = at(name);
         assert_eq!(FileKind::of(&data), FileKind::StrandBones);
         let read = bones::read(name, &data).unwrap();

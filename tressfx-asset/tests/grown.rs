@@ -36,7 +36,8 @@ fn roots_are_even_by_area_and_far_apart() {
     let area = 4.0 + 0.125;
     assert_eq!(places.len(), (500.0 * area as f64).round() as usize);
     // Parts of the mesh have as many roots as their area asks for.
-    let share = |is_in: &dyn Fn(DVec3) -> bool| places.iter().filter(|place| is_in(place.position)).count() as f64 / 500.0;
+    let share =
+        |is_in: &dyn Fn(DVec3) -> bool| places.iter().filter(|place| is_in(place.position)).count() as f64 / 500.0;
     let parts: [(f64, &dyn Fn(DVec3) -> bool); 6] = [
         (0.125, &|p| p.y > 0.5),
         (1.0, &|p| p.y < 0.5 && p.x < 1.0 && p.z < 1.0),
@@ -86,7 +87,10 @@ fn strands_are_as_asked_for_and_the_same_each_time() {
         let length: f32 = points.windows(2).map(|edge| edge[0].distance(edge[1])).sum();
         assert!((0.24 - 1e-4..=0.3 + 1e-4).contains(&length), "{length}");
         let [first, last] = [points[1] - points[0], points[7] - points[6]].map(Vec3::normalize);
-        assert!(first.y > 0.7 && last.x > 0.7 && last.y < first.y, "it leaves along the normal and is combed: {first} {last}");
+        assert!(
+            first.y > 0.7 && last.x > 0.7 && last.y < first.y,
+            "it leaves along the normal and is combed: {first} {last}"
+        );
     }
     let mesh = square();
     for (wrong, name) in [

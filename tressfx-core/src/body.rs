@@ -152,7 +152,9 @@ impl SkinnedMesh {
     pub fn check(&self) -> Result<(), BodyError> {
         let mesh = || self.name.clone();
         let vertices = self.positions.len();
-        for (what, count) in [("vertices", vertices), ("triangles", self.triangles.len()), ("joints", self.joints.len())] {
+        for (what, count) in
+            [("vertices", vertices), ("triangles", self.triangles.len()), ("joints", self.joints.len())]
+        {
             if count == 0 {
                 return Err(BodyError::Empty { mesh: mesh(), what });
             }

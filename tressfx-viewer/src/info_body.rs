@@ -109,7 +109,9 @@ fn of_character(format: &str, character: &Character) -> Vec<(&'static str, Value
     let corner = |of: fn(glam::Vec3, glam::Vec3) -> glam::Vec3, from: f32| {
         mesh.positions.iter().copied().fold(glam::Vec3::splat(from), of).to_array()
     };
-    let animation = |animation: &tressfx_asset::character::Animation| json!(format!("{} ({:.3} s)", animation.name, animation.seconds));
+    let animation = |animation: &tressfx_asset::character::Animation| {
+        json!(format!("{} ({:.3} s)", animation.name, animation.seconds))
+    };
     let low = corner(glam::Vec3::min, f32::INFINITY);
     let high = corner(glam::Vec3::max, f32::NEG_INFINITY);
     vec![

@@ -100,7 +100,9 @@ impl Arrays<'_> {
                 };
                 match (entries.get_mut(place as usize), decode(value)) {
                     (Some(entry), Some(value)) => *entry = value,
-                    _ => return wrong("a sparse entry is outside of the array, or of a type that is not allowed there"),
+                    _ => {
+                        return wrong("a sparse entry is outside of the array, or of a type that is not allowed there");
+                    }
                 }
             }
         }

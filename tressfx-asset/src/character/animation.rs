@@ -142,7 +142,8 @@ impl Channel {
             Interpolation::CubicSpline => {
                 let (out, into) = (self.value(key, 1), self.value(key + 1, -1));
                 let (t2, t3) = (t * t, t * t * t);
-                let parts = [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, length * (t3 - t2)];
+                let parts =
+                    [2.0 * t3 - 3.0 * t2 + 1.0, length * (t3 - 2.0 * t2 + t), 3.0 * t2 - 2.0 * t3, length * (t3 - t2)];
                 let at = |i: usize| parts[0] * one[i] + parts[1] * out[i] + parts[2] * next[i] + parts[3] * into[i];
                 (0..self.width).map(at).collect()
             }

@@ -40,7 +40,9 @@ fn from_uri(name: &str, field: &str, uri: &str, folder: Option<&Path>) -> Result
         let Some((_, text)) = data.split_once(";base64,") else {
             return Err(broken(name, field.to_owned(), "a data URI that is not base64"));
         };
-        return STANDARD.decode(text).map_err(|error| FileError::new(name, field, FileErrorKind::Gltf(error.to_string())));
+        return STANDARD
+            .decode(text)
+            .map_err(|error| FileError::new(name, field, FileErrorKind::Gltf(error.to_string())));
     }
     let decoded = percent_encoding::percent_decode_str(uri).decode_utf8_lossy().into_owned();
     let path = PathBuf::from(&decoded);

@@ -46,7 +46,11 @@ pub fn read_bytes(name: &str, data: &[u8], folder: Option<&Path>) -> Result<Char
     check_indices(name, &root)?;
     let document = Document::from_json(root).map_err(wrong)?;
     if let Some(extension) = document.extensions_required().next() {
-        return Err(FileError::new(name, "extensionsRequired", FileErrorKind::Gltf(format!("{extension} is not known"))));
+        return Err(FileError::new(
+            name,
+            "extensionsRequired",
+            FileErrorKind::Gltf(format!("{extension} is not known")),
+        ));
     }
     let buffers = buffers::read(name, &document, binary, folder)?;
     character(Arrays { name, buffers: &buffers }, &document)

@@ -127,7 +127,11 @@ impl Part<'_> {
         match primitive.mode() {
             Mode::Triangles => {}
             Mode::TriangleStrip | Mode::TriangleFan => {
-                return Err(broken(self.arrays.name, self.field.clone(), "strips and fans are not read: triangles alone"));
+                return Err(broken(
+                    self.arrays.name,
+                    self.field.clone(),
+                    "strips and fans are not read: triangles alone",
+                ));
             }
             _ => return Ok(()),
         }
@@ -172,7 +176,12 @@ impl Part<'_> {
         Ok(())
     }
 
-    fn vectors(&self, accessor: &::gltf::Accessor<'_>, what: &str, count: Option<usize>) -> Result<Vec<Vec3>, FileError> {
+    fn vectors(
+        &self,
+        accessor: &::gltf::Accessor<'_>,
+        what: &str,
+        count: Option<usize>,
+    ) -> Result<Vec<Vec3>, FileError> {
         let vectors = self.arrays.floats::<3>(accessor, &format!("{}, {what}", self.field), count)?;
         Ok(vectors.into_iter().map(Vec3::from).collect())
     }

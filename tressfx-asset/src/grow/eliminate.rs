@@ -26,8 +26,10 @@ pub(super) fn eliminate(places: &[SkinPlace], wanted: usize, area: f64) -> Vec<S
     let mut weights: Vec<f64> =
         (0..places.len()).map(|one| near.of(one).map(|other| weight(one, other)).sum()).collect();
     let key = |weights: &[f64], place: usize| (weights[place].to_bits(), place);
-    let mut heap: BinaryHeap<(u64, Reverse<usize>)> =
-        (0..places.len()).map(|place| key(&weights, place)).map(|(weight, place): Key| (weight, Reverse(place))).collect();
+    let mut heap: BinaryHeap<(u64, Reverse<usize>)> = (0..places.len())
+        .map(|place| key(&weights, place))
+        .map(|(weight, place): Key| (weight, Reverse(place)))
+        .collect();
     let mut is_left = vec![true; places.len()];
     let mut left = places.len();
     while left > wanted {

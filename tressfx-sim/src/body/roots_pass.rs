@@ -60,7 +60,8 @@ impl RootsPass {
         read: (&'static str, Binding),
     ) -> Result<Self, SimError> {
         let ((kernel, bindings, uniform, bound), owner) = Owner::build(backend, |backend| {
-            let uniform = backend.create_buffer(&BufferDesc::uniform("hair.root_source", size_of::<RootSource>() as u64))?;
+            let uniform =
+                backend.create_buffer(&BufferDesc::uniform("hair.root_source", size_of::<RootSource>() as u64))?;
             let bound = storage(backend, "hair.bound_roots", size_of::<T>() as u64, roots.len() as u32)?;
             let shader = Arc::new(Shader::new(kernel, &Specialization::new())?);
             let kernel = backend.create_compute(&ComputeDesc::new(shader))?;

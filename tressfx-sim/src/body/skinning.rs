@@ -80,8 +80,11 @@ impl Skinning {
             let vertices = storage(backend, "hair.body.vertices", 32, vertex_count)?;
             let past = if keeps_past { Some(storage(backend, "hair.body.past", 32, vertex_count)?) } else { None };
             uploads.upload(bound, 0, &bound_vertices(mesh));
-            let mut resources =
-                vec![("bound_vertices", bound.into()), ("joints", palette.buffer.into()), ("vertices", vertices.into())];
+            let mut resources = vec![
+                ("bound_vertices", bound.into()),
+                ("joints", palette.buffer.into()),
+                ("vertices", vertices.into()),
+            ];
             let mut morph_weights = None;
             if let Some(MorphOffsets { first, offsets }) = &offsets {
                 let firsts = storage(backend, "hair.body.first_offsets", 4, first.len() as u32)?;
@@ -107,7 +110,11 @@ impl Skinning {
         let mesh = SkinnedMesh {
             name: mesh.name.clone(),
             joints: mesh.joints.clone(),
-            morphs: mesh.morphs.iter().map(|morph| tressfx_core::body::Morph { offsets: Vec::new(), ..morph.clone() }).collect(),
+            morphs: mesh
+                .morphs
+                .iter()
+                .map(|morph| tressfx_core::body::Morph { offsets: Vec::new(), ..morph.clone() })
+                .collect(),
             ..SkinnedMesh::default()
         };
         let has_pose = false;
@@ -179,7 +186,8 @@ impl MorphOffsets {
     /// `None` where nothing is moved.
     fn new(mesh: &SkinnedMesh) -> Option<Self> {
         let all = mesh.morphs.iter().enumerate();
-        let mut all: Vec<_> = all.flat_map(|(target, morph)| morph.offsets.iter().map(move |offset| (target, offset))).collect();
+        let mut all: Vec<_> =
+            all.flat_map(|(target, morph)| morph.offsets.iter().map(move |offset| (target, offset))).collect();
         all.sort_by_key(|(target, offset)| (offset.vertex, *target));
         let mut first = vec![0; mesh.positions.len() + 1];
         all.iter().for_each(|(_, offset)| first[offset.vertex as usize + 1] += 1);
