@@ -11,6 +11,7 @@ use std::path::Path;
 
 use tressfx_asset::builtin::Builtin;
 use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::body::{Influences, Morph, MorphOffset};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shader::{Shader, ShaderSlot};
@@ -21,6 +22,7 @@ use tressfx_render::{
     Pigment, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo, Targets,
     Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
+use tressfx_sim::body::{Binding, BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, Fields};
 use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
 
@@ -160,6 +162,20 @@ fn the_table_of_looks_has_those_of_the_code() {
     }
 }
 
+/// The passes of a body with morph targets, on which the second section grows by triangles and by bones.
+fn body(backend: &mut NullBackend, list: &mut PassList, sim: &mut HairSim, groom: &Builtin, strands: &Strands) {
+    let mut mesh = groom.mesh().skinned("head").unwrap();
+    let offset = MorphOffset { vertex: 0, position: glam::Vec3::Y, normal: glam::Vec3::ZERO };
+    mesh.morphs = vec![Morph { name: "swell".into(), offsets: vec![offset] }];
+    let mut skinning = Skinning::new(backend, list, &mesh, true).unwrap();
+    skinning.pose(list, &mesh.bind_pose()).unwrap();
+    let binding = Binding::of_guides(strands, &mesh, 1.0).unwrap();
+    let on_skin = TriangleRoots::new(backend, list, sim, 1, &binding, skinning.mesh_vertices()).unwrap();
+    on_skin.record(list, sim);
+    let of = vec![Influences::rigid(0); strands.order.len()];
+    BoneRoots::new(backend, list, (sim, 1), strands, &of, skinning.palette()).unwrap().record(list, sim);
+}
+
 /// Lists with every pass that there is.
 fn everything() -> PassList {
     let mut backend = NullBackend::default();
@@ -181,6 +197,7 @@ fn everything() -> PassList {
     }
     sim.allow_sleep(&mut backend, SleepParams::default()).unwrap();
     sim.request_motion(&mut list);
+    body(&mut backend, &mut list, &mut sim, &groom, &strands);
     let size = [64, 64];
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();

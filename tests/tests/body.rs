@@ -2,6 +2,8 @@
 
 mod support;
 
+use std::f32::consts::PI;
+
 use glam::{Affine3A, DQuat, DVec3, Quat, Vec3};
 use support::gpu;
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
@@ -239,7 +241,7 @@ fn a_body_that_turns_as_a_whole_turns_its_roots_as_a_whole() {
     let mut rig = Rig::new(gpu, &strands, &mesh, Solver::TressFx);
     let (center, roots) = (rig.sim.center(), roots(&strands));
     // Half turns too, where a quaternion has no scalar part.
-    for (axis, angle) in [(Vec3::X, 3.141_592_7), (Vec3::Y, 2.0), (Vec3::new(1.0, 1.0, 0.0).normalize(), 3.141_592_7)] {
+    for (axis, angle) in [(Vec3::X, PI), (Vec3::Y, 2.0), (Vec3::new(1.0, 1.0, 0.0).normalize(), PI)] {
         let turn = Pose { rotation: Quat::from_axis_angle(axis, angle), translation: Vec3::new(0.3, -0.2, 0.5) };
         let joint = Affine3A::from_rotation_translation(turn.rotation, turn.translation);
         let whole = MeshPose { joints: vec![joint; 3], morphs: vec![0.0; 2] };

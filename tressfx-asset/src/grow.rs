@@ -5,6 +5,8 @@
 
 mod eliminate;
 
+use std::collections::HashMap;
+
 use glam::{DVec3, Vec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
@@ -82,7 +84,7 @@ pub struct SkinPlace {
     pub triangle: usize,
     /// Where it is.
     pub position: DVec3,
-    /// The normal there.
+    /// The normal there, smooth across the edges of triangles.
     pub normal: DVec3,
 }
 
@@ -124,6 +126,7 @@ pub fn roots(mesh: &SkinnedMesh, density: f64, seed: u64) -> Result<Vec<SkinPlac
         return Err(GrowError::Number { name, value: wanted, expected });
     }
     let wanted = wanted.round() as usize;
+    let normals = smooth_normals(mesh);
     let mut random = Pcg32::seed_from_u64(seed);
     let count = CANDIDATES * wanted;
     let candidate = |index: usize| {
@@ -135,10 +138,27 @@ pub fn roots(mesh: &SkinnedMesh, density: f64, seed: u64) -> Result<Vec<SkinPlac
         let sum = |of: &[Vec3]| {
             corners.iter().zip(shares).map(|(&corner, share)| of[corner as usize].as_dvec3() * share).sum::<DVec3>()
         };
-        SkinPlace { triangle, position: sum(&mesh.positions), normal: sum(&mesh.normals).normalize_or(DVec3::Y) }
+        SkinPlace { triangle, position: sum(&mesh.positions), normal: sum(&normals).normalize_or(DVec3::Y) }
     };
     let candidates: Vec<SkinPlace> = (0..count).map(candidate).collect();
     Ok(eliminate(&candidates, wanted, area))
+}
+
+/// Normals of vertices from all triangles at their place, by area. Vertices are often there several times, each with the normal of its own triangle,
+/// and hair would part along every edge. A place where two sides meet with opposite normals keeps those of the mesh.
+fn smooth_normals(mesh: &SkinnedMesh) -> Vec<Vec3> {
+    let mut sums: HashMap<[u32; 3], Vec3> = HashMap::new();
+    let place = |corner: u32| (mesh.positions[corner as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|corner| mesh.positions[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&corner| *sums.entry(place(corner)).or_default() += normal);
+    }
+    let smooth = |(corner, &own): (usize, &Vec3)| {
+        let sum = sums.get(&place(corner as u32)).copied().unwrap_or_default().normalize_or_zero();
+        if sum.dot(own) > 0.0 { sum } else { own }
+    };
+    mesh.normals.iter().enumerate().map(smooth).collect()
 }
 
 impl Growth {

@@ -266,7 +266,8 @@ fn what_is_wrong_is_named() {
     bad[42..46].copy_from_slice(&f32::NAN.to_le_bytes());
     assert!(bones::read("b", &bad).unwrap_err().to_string().contains("weight 0 of strand 0 (byte 42)"));
     bad = small_bones();
-    (bad[42..46].fill(0), bad[50..54].fill(0));
+    bad[42..46].fill(0);
+    bad[50..54].fill(0);
     assert!(bones::read("b", &bad).unwrap_err().to_string().contains("a sum above 0"));
     bad = small_bones();
     bad[8] = 200;

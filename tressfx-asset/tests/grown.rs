@@ -33,8 +33,8 @@ fn nearest(places: &[SkinPlace], of: usize) -> f64 {
 #[test]
 fn roots_are_even_by_area_and_far_apart() {
     let places = roots(&square(), 500.0, 3).unwrap();
-    let area = 4.0 + 0.125;
-    assert_eq!(places.len(), (500.0 * area as f64).round() as usize);
+    let area = 4.0f64 + 0.125;
+    assert_eq!(places.len(), (500.0 * area).round() as usize);
     // Parts of the mesh have as many roots as their area asks for.
     let share =
         |is_in: &dyn Fn(DVec3) -> bool| places.iter().filter(|place| is_in(place.position)).count() as f64 / 500.0;
@@ -73,6 +73,26 @@ fn two_sides_of_an_ear_take_no_room_from_each_other() {
     let places = roots(&mesh, 200.0, 1).unwrap();
     let front = places.iter().filter(|place| place.normal.y > 0.0).count() as f64;
     assert!((front / places.len() as f64 - 0.5).abs() < 0.03, "{front} of {}", places.len());
+}
+
+#[test]
+fn hair_does_not_part_at_the_edges_of_flat_triangles() {
+    // A roof whose two sides have vertices and normals of their own.
+    let slope = Vec3::new(0.6, 0.8, 0.0);
+    let side = |sign: f32| [Vec3::ZERO, Vec3::Z, Vec3::new(sign * 0.8, -0.6, 0.0), Vec3::new(sign * 0.8, -0.6, 1.0)];
+    let mesh = SkinnedMesh {
+        name: "roof".into(),
+        positions: [side(1.0), side(-1.0)].concat(),
+        normals: [[slope; 4], [slope * Vec3::new(-1.0, 1.0, 1.0); 4]].concat(),
+        triangles: vec![[0, 1, 2], [2, 1, 3], [4, 6, 5], [6, 7, 5]],
+        joints: vec!["root".into()],
+        influences: vec![Influences::rigid(0); 8],
+        morphs: Vec::new(),
+    };
+    let places = roots(&mesh, 2000.0, 0).unwrap();
+    let near_ridge: Vec<_> = places.iter().filter(|place| place.position.x.abs() < 0.03).collect();
+    assert!(near_ridge.len() > 50 && near_ridge.iter().all(|place| place.normal.x.abs() < 0.05), "{near_ridge:?}");
+    assert!(places.iter().filter(|place| place.position.x > 0.75).all(|place| place.normal.x > 0.5));
 }
 
 #[test]

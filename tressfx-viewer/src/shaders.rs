@@ -8,12 +8,15 @@ use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use serde::Serialize;
 use tressfx_core::backend::{Caps, Format};
+use tressfx_core::body::{Influences, Morph, MorphOffset, SkinnedMesh};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
+use tressfx_core::strands::Strands;
 use tressfx_render::{HairRenderer, OwnLook, RenderDesc};
+use tressfx_sim::body::{BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, Fields};
 use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams};
 
@@ -134,6 +137,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
         HairSim::new(&mut backend, &mut list, &sections, 1)?
     };
     sim.allow_sleep(&mut backend, SleepParams::default())?;
+    body(&mut backend, &sim, &groom.sections[0])?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
     let own_colors = OwnLook::of(&groom.sections[0]).colors().is_some();
@@ -148,6 +152,29 @@ fn fields(backend: &mut NullBackend, list: &mut PassList) -> Result<Fields> {
     let faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
     let [closed, open] = [&faces[..], &faces[3..]].map(|faces| FieldDesc::new(&corners, faces));
     Ok(Fields::new(backend, list, &[closed, open])?)
+}
+
+/// The kernels of a body that the second section grows on, with morph targets and without.
+fn body(backend: &mut NullBackend, sim: &HairSim, strands: &Strands) -> Result<()> {
+    let mut list = PassList::new();
+    let joint = SkinnedMesh {
+        name: "body".into(),
+        positions: vec![glam::Vec3::ZERO, glam::Vec3::Z, glam::Vec3::X],
+        normals: vec![glam::Vec3::Y; 3],
+        triangles: vec![[0, 1, 2]],
+        joints: vec!["root".into()],
+        influences: vec![Influences::rigid(0); 3],
+        morphs: Vec::new(),
+    };
+    let offsets = vec![MorphOffset { vertex: 0, position: glam::Vec3::Y, normal: glam::Vec3::ZERO }];
+    let mesh = SkinnedMesh { morphs: vec![Morph { name: "morph".into(), offsets }], ..joint.clone() };
+    Skinning::new(backend, &mut list, &joint, false)?;
+    let skinning = Skinning::new(backend, &mut list, &mesh, false)?;
+    let binding = tressfx_sim::body::Binding::of_guides(strands, &mesh, f64::INFINITY)?;
+    TriangleRoots::new(backend, &mut list, sim, 1, &binding, skinning.mesh_vertices())?;
+    let of = vec![Influences::rigid(0); strands.order.len()];
+    BoneRoots::new(backend, &mut list, (sim, 1), strands, &of, skinning.palette())?;
+    Ok(())
 }
 
 /// The label, and where several kernels have it, the features that are on.

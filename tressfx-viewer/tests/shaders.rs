@@ -104,6 +104,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "hair_output",
         "internal_damping",
         "open_edges",
+        "morphs",
         "ordered",
         "own_colors",
         "pinned_tips",

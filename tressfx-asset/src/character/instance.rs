@@ -1,7 +1,7 @@
 //! A mesh of a node, added to the one mesh of a character.
 
 use ::gltf::mesh::{Mode, Primitive, Semantic};
-use glam::{DAffine3, DMat3, DMat4, Vec3};
+use glam::{DAffine3, DMat4, Vec3};
 use tressfx_core::asset::AssetProblem;
 use tressfx_core::body::{Influences, Morph, MorphOffset};
 
@@ -149,7 +149,7 @@ impl Part<'_> {
             Some(normals) => self.vectors(&normals, "normals", Some(count))?,
             None => vertex_normals(&positions, triangles.as_flattened()),
         };
-        let turn = DMat3::from(self.skin.placed.matrix3).inverse().transpose();
+        let turn = self.skin.placed.matrix3.inverse().transpose();
         let placed = |position: &Vec3| self.skin.placed.transform_point3(position.as_dvec3()).as_vec3();
         let turned = |normal: &Vec3| (turn * normal.as_dvec3()).as_vec3();
         let influences = self.influences(character, primitive, count)?;
