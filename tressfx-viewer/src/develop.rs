@@ -83,7 +83,7 @@ fn agx(light: Vec3) -> Vec3 {
     const INTO: Mat3 = Mat3::from_cols(
         Vec3::new(0.842_479_06, 0.042_328_242, 0.042_375_655),
         Vec3::new(0.078_433_6, 0.878_468_64, 0.078_433_6),
-        Vec3::new(0.079_223_745, 0.079_166_13, 0.879_142_97),
+        Vec3::new(0.079_223_745, 0.079_166_13, 0.879_143),
     );
     let stops = |channel: f32| (channel.max(1e-10).log2() - STOPS[0]) / (STOPS[1] - STOPS[0]);
     let level = |channel: f32| contrast(stops(channel).clamp(0.0, 1.0));
