@@ -147,7 +147,21 @@ impl Run {
             BackendName::Wgpu | BackendName::Both => "wgpu",
         };
         let (times, trace) = (PassTimes::default(), Trace::new());
-        Ok(Self { groom, params, backend, sim, body, times, trace, backend_name, frame: 0, wind, meshes, fields, colliders })
+        Ok(Self {
+            groom,
+            params,
+            backend,
+            sim,
+            body,
+            times,
+            trace,
+            backend_name,
+            frame: 0,
+            wind,
+            meshes,
+            fields,
+            colliders,
+        })
     }
 
     /// How many frames come out: of no simulated ones, the rest pose.
