@@ -97,3 +97,21 @@ fn what_is_collided_with_is_what_was_asked_for() {
         "{said}"
     );
 }
+
+#[test]
+fn the_field_of_a_body_is_made_anew_where_the_body_moves() {
+    let Some(assets) = assets() else { return };
+    let (fox, groom, out) = (assets.join("gltf_fox/Fox.glb"), temporary("fur.tfx"), temporary("walked.png"));
+    let fox = fox.to_string_lossy();
+    let grown = tressfx(&["grow", &fox, "--density", "0.02", "--length", "4", "--out", &groom]);
+    assert!(grown.status.success(), "{}", String::from_utf8_lossy(&grown.stderr));
+    let passes = |words: &[&str]| {
+        let scene = ["render", &groom, "--character", &fox, "--collide", "sdf", "--solver", "tressfx", "--frames", "2"];
+        let done = tressfx(&[&scene, &["--size", "64x64", "--print-passes", "--out", &out][..], words].concat());
+        assert!(done.status.success(), "{words:?}: {}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).unwrap()
+    };
+    let (still, walks) = (passes(&[]), passes(&["--animation", "Walk"]));
+    assert!(still.contains("fields (read)") && !still.contains("hair.sim.field_sign"), "made once: {still}");
+    assert!(walks.contains("hair.sim.skin") && walks.contains("hair.sim.field_sign"), "{walks}");
+}
