@@ -15,7 +15,7 @@ pub struct SectionDesc<'a> {
     pub params: SimParams,
     /// What solves their equations of motion.
     pub solver: Solver,
-    /// Whether roots have transforms of their own ([`HairSim::set_roots`]). Where they have not, all ride on the head.
+    /// Whether roots have transforms of their own ([`HairSim::set_roots`](crate::HairSim::set_roots)). Where they have not, all ride on the head.
     pub own_roots: bool,
 }
 

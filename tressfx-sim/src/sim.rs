@@ -261,7 +261,7 @@ impl HairSim {
     }
 
     /// Says where the roots of a section are at the end of the next frame: a pose a guide, within the space of the rest pose;
-    /// the head is applied after it. An identity rides on the head. Guides are in the order of [`Strands::rest`].
+    /// the head is applied after it. An identity rides on the head. Guides are in the order of [`Strands::rest`](tressfx_core::strands::Strands::rest).
     ///
     /// Transforms stay until they are given again. Within a frame roots go evenly from where they were.
     ///
@@ -373,7 +373,7 @@ impl HairSim {
     }
 
     /// Brings the positions of all strands back, a ticket each section: `vec4<f32>`, vertex-major over all strands; position
-    /// and inverse mass. [`Strands::deinterleave`] makes them strand-major, and [`HairSim::pose`] takes them to the world.
+    /// and inverse mass. [`Strands::deinterleave`](tressfx_core::strands::Strands::deinterleave) makes them strand-major, and [`HairSim::pose`] takes them to the world.
     pub fn read_positions(&self, list: &mut PassList) -> Vec<Ticket> {
         let read = |buffers: &StrandBuffers| {
             list.read_buffer(buffers.positions, 0, 16 * u64::from(buffers.shape.strand_vertices()))
