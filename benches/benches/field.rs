@@ -8,7 +8,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 use tressfx_asset::mesh::Mesh;
-use tressfx_benches::{DEVICES, Failure, timed};
+use tressfx_benches::{DEVICES, Failure, median_and_least, timed};
 use tressfx_core::backend::Run;
 use tressfx_core::pass::PassList;
 use tressfx_sim::field::{FieldDesc, Fields};
@@ -90,10 +90,4 @@ fn bench(backend: &mut dyn Run, name: &str, mesh: &Mesh, nodes: u32, frames: u32
     passes.iter_mut().for_each(|(label, times)| println!("  {label}: {}", median_and_least(times)));
     fields.destroy(backend);
     Ok(())
-}
-
-fn median_and_least(times: &mut [f64]) -> String {
-    times.sort_by(f64::total_cmp);
-    let [median, least] = [times.len() / 2, 0].map(|index| times.get(index).map_or(0.0, |time| time * 1e-6));
-    format!("{median:.4} ms, least {least:.4} ms")
 }

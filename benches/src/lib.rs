@@ -4,8 +4,10 @@ mod clock;
 mod device;
 mod groom;
 mod recorder;
+mod spread;
 
 pub use clock::GpuClock;
 pub use device::{DEVICES, Open, timed};
 pub use groom::{Failure, asset, strands};
 pub use recorder::Recorder;
+pub use spread::{Spread, median_and_least};

@@ -10,11 +10,13 @@ use std::fs;
 use std::path::Path;
 
 use tressfx_asset::builtin::Builtin;
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::{Backend, Format, TextureDesc};
 use tressfx_core::body::{Influences, Morph, MorphOffset};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shader::{Shader, ShaderSlot};
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
@@ -24,7 +26,10 @@ use tressfx_render::{
 };
 use tressfx_sim::body::{Binding, BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, Fields};
-use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, SleepParams, Solver, StepInput, Wind};
+use tressfx_sim::{
+    ClockParams, Collider, HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams, Solver,
+    StepInput, Wind,
+};
 
 use table::{GUIDE, Row, rows, words};
 
@@ -176,6 +181,17 @@ fn body(backend: &mut NullBackend, list: &mut PassList, sim: &mut HairSim, groom
     BoneRoots::new(backend, list, (sim, 1), strands, &of, skinning.palette()).unwrap().record(list, sim);
 }
 
+/// The pass of strands between three guides.
+fn interpolation(backend: &mut NullBackend, list: &mut PassList) {
+    let roots = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Z];
+    let points = roots.iter().flat_map(|&root| [root, root + glam::Vec3::Y].map(glam::Vec3::into)).collect();
+    let asset = HairAsset::new("guides", AssetFormat::Builtin, points, vec![2; 3]);
+    let guides = Strands::new(&asset, &StrandOptions::default()).unwrap();
+    let buffers = StrandBuffers::new(backend, StrandShape::of(&guides), glam::Vec3::ZERO).unwrap();
+    let params = InterpolationParams { clump: 0.5, noise: 0.1, shorter: 0.5, ..InterpolationParams::default() };
+    Interpolation::new(backend, list, (&buffers, &guides), 9, &params).unwrap().record(list, 9);
+}
+
 /// Lists with every pass that there is.
 fn everything() -> PassList {
     let mut backend = NullBackend::default();
@@ -198,6 +214,7 @@ fn everything() -> PassList {
     sim.allow_sleep(&mut backend, SleepParams::default()).unwrap();
     sim.request_motion(&mut list);
     body(&mut backend, &mut list, &mut sim, &groom, &strands);
+    interpolation(&mut backend, &mut list);
     let size = [64, 64];
     let view = Camera::around(&[glam::Vec3::NEG_ONE, glam::Vec3::ONE], size).view(size).unwrap();
     let mut texture = |format| backend.create_texture(&TextureDesc::new("target", size, format)).unwrap();

@@ -105,6 +105,9 @@ fn of_many_characters_only_those_in_view_have_passes() {
         .zip(&grooms)
         .map(|(section, groom)| SectionDraw::new(section, &groom.material, groom.pose))
         .collect();
+    let views = [ViewDraw::new(&screen.view, &screen.lights, screen.targets())];
+    let read = screen.renderer.reads(&views, &draws);
+    assert!(read[..2] == [true; 2] && read[2..] == [false; 60], "{read:?}");
     let mut commands = |draws: &[SectionDraw]| {
         let mut list = PassList::new();
         let (targets, view) = (screen.targets(), screen.view);

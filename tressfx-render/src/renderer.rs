@@ -296,6 +296,14 @@ impl HairRenderer {
         self.shadows.iter().flat_map(Shadows::bindings).collect()
     }
 
+    /// Which of the sections a frame of these views reads: those that are seen, and those that may throw shadows on them. For strands that are made each frame (`Interpolation`
+    /// of the simulation); [`HairRenderer::cast`] reads all that it is given.
+    pub fn reads(&self, views: &[ViewDraw], draws: &[SectionDraw]) -> Vec<bool> {
+        let (kept, _) = reach::split(views, draws, self.shadows.is_some());
+        let is_kept = |draw: &SectionDraw| kept.iter().any(|kept| std::ptr::eq(kept.strands, draw.strands));
+        draws.iter().map(is_kept).collect()
+    }
+
     /// Draws all sections into all views; their fragments are sorted together. For an empty section or view no pass is
     /// written, nor for a section that no view can see ([`StrandInfo::reach`](crate::StrandInfo::reach)), but for those of the shadows that it may throw on others:
     /// [`HairRenderer::drawn`] counts them.

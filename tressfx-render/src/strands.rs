@@ -64,10 +64,21 @@ impl StrandInfo {
         let sample = (0..count).map(|i| segment(sampled(i, count, segments))).collect();
         Self {
             metres_per_unit: strands.metres_per_unit,
-            fitting_radius: fitting_radius(strands),
+            fitting_radius: fitting_radius(strands, f64::from(strands.strand_count())),
             sample,
             bends: Bends::of(strands),
             reach: reach::of(strands),
+        }
+    }
+
+    /// What there is to know of strands that are made each frame between `guides`, so many; `sample` is the rest pose of an even sample of them. What is between guides reaches
+    /// no further than they do.
+    pub fn between(guides: &Strands, sample: &Strands, strands: u32) -> Self {
+        let share = f64::from(strands) / f64::from(sample.guides.max(1));
+        Self {
+            fitting_radius: fitting_radius(sample, f64::from(sample.strand_count()) * share),
+            reach: reach::of(guides),
+            ..Self::new(sample)
         }
     }
 
@@ -84,13 +95,13 @@ fn sampled(i: usize, count: usize, segments: usize) -> usize {
     (((i as f64 + golden) * segments as f64 / count as f64) as usize).min(segments - 1)
 }
 
-/// The radius with which the strands would cover the sides of the groom's bounds [`DENSE_LAYERS`] times, clamped to between
+/// The radius with which so many strands as long as these would cover the sides of the groom's bounds [`DENSE_LAYERS`] times, clamped to between
 /// [`MIN_FITTING_RADIUS`] and [`MAX_FITTING_RADIUS`].
-fn fitting_radius(strands: &Strands) -> f32 {
+fn fitting_radius(strands: &Strands, count: f64) -> f32 {
     let extent = (strands.bounds.max - strands.bounds.min) * strands.metres_per_unit;
     let sides = (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / 3.0;
     let length: f64 = strands.rest_lengths.iter().map(|&length| f64::from(length)).sum();
-    let length = length * f64::from(strands.metres_per_unit) * f64::from(1 + strands.follows);
+    let length = length * f64::from(strands.metres_per_unit) * (count / f64::from(strands.guides.max(1)));
     let radius = DENSE_LAYERS * f64::from(sides) / (2.0 * length.max(1e-9));
     radius.clamp(MIN_FITTING_RADIUS, MAX_FITTING_RADIUS) as f32
 }
@@ -322,6 +333,11 @@ impl<'a> SectionDraw<'a> {
     pub fn segments(&self) -> u32 {
         let lod = self.lod_uniform();
         lod.strands * (lod.vertices - 1)
+    }
+
+    /// Strands that a frame reads, the first ones: those that are drawn and those that shadows count. For strands that are made each frame.
+    pub fn needed_strands(&self) -> u32 {
+        self.lod_uniform().strands.max(self.lod.shadow_strands(self.strands.buffers.shape))
     }
 
     /// What the shaders are given.

@@ -101,6 +101,24 @@ pub enum SimError {
         /// What was given.
         mesh: MeshVertices,
     },
+    /// No render strands, or more vertices than a 32-bit index reaches.
+    #[error("{strands} render strands of {vertices} vertices: there must be one or more, and fewer than 2^32 vertices")]
+    RenderStrands {
+        /// Strands that were asked for.
+        strands: u32,
+        /// Vertices of each.
+        vertices: u32,
+    },
+    /// There is no triangle between guides, or the buffers hold other guides.
+    #[error(
+        "{name}: between {guides} guides there is no triangle: render strands lie between three guides that are near each other, or follow guides"
+    )]
+    NoTriangles {
+        /// The groom.
+        name: String,
+        /// How many it has.
+        guides: u32,
+    },
     /// The backend could not make something.
     #[error(transparent)]
     Backend(#[from] tressfx_core::Error),

@@ -11,6 +11,7 @@ pub(crate) mod field_grid;
 pub(crate) mod field_seed;
 pub(crate) mod field_sign;
 pub(crate) mod field_splat;
+pub(crate) mod interpolate;
 pub(crate) mod moved;
 pub(crate) mod roots;
 pub(crate) mod skin;

@@ -158,6 +158,9 @@ pub(crate) struct Render {
     /// A .png of the last frame, a .gif or .apng of all, or a folder (ending in /) with every frame
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// Draw so many strands between the guides, made each frame, in the place of those that follow them
+    #[arg(long, value_name = "N", conflicts_with = "follow", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) interpolate: Option<u32>,
     /// The first frame that is written where every frame is, from 0; those before it are simulated alone
     #[arg(long, default_value_t = 0, value_name = "FRAME")]
     pub(crate) from: u32,

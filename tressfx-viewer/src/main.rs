@@ -17,6 +17,7 @@ mod grow;
 mod hair_output;
 mod info;
 mod info_body;
+mod interpolate;
 mod light_params;
 mod lod;
 mod motion;

@@ -22,6 +22,11 @@ impl Textures {
         Ok(Self { root: of(&args.root_texture)?, strand: of(&args.strand_texture)? })
     }
 
+    /// Whether none was asked for.
+    pub(crate) fn are_none(&self) -> bool {
+        self.root.is_none() && self.strand.is_none()
+    }
+
     /// What a section brings along, with the pictures over it.
     pub(crate) fn look(&self, strands: &Strands) -> Result<OwnLook> {
         let mut look = OwnLook::of(strands);

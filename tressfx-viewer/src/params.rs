@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use tressfx_core::shape::Capsule;
 use tressfx_render::{Lights, Material};
-use tressfx_sim::{ClockParams, SimParams, Wind};
+use tressfx_sim::{ClockParams, InterpolationParams, SimParams, Wind};
 
 use crate::light_params::{self, LightParams, SkyParams};
 
@@ -20,6 +20,8 @@ pub(crate) struct Params {
     pub(crate) sim: SimParams,
     /// How they look.
     pub(crate) material: Material,
+    /// How strands are made between guides, where `--interpolate` asks for them.
+    pub(crate) interpolation: InterpolationParams,
     /// The wind; `--wind` overrides its velocity.
     pub(crate) wind: Option<Wind>,
     /// What hair collides with, beside what a built-in groom brings: in the space and the unit of the groom.
@@ -54,6 +56,7 @@ impl Params {
             bail!("{} tables `section` for {sections} grooms", params.section.len());
         }
         params.clock.validate()?;
+        params.interpolation.validate()?;
         if let Some(index) = params.capsule.iter().position(|capsule| !capsule.is_sound()) {
             bail!("capsule {index}: a number is not finite, or a radius is negative");
         }

@@ -10,7 +10,6 @@ use std::time::Instant;
 use anyhow::Result;
 use glam::{DVec3, Vec3};
 use tressfx_core::pass::{PassList, Ticket};
-use tressfx_core::strand_buffers::StrandShape;
 use tressfx_render::SectionDraw;
 use tressfx_truth::{Section, ShadowMethod, Truth};
 
@@ -29,6 +28,7 @@ struct Tickets {
     counters: Ticket,
     positions: Vec<Ticket>,
     colors: Vec<Ticket>,
+    thickness: Vec<Ticket>,
 }
 
 /// A section on the CPU.
@@ -85,13 +85,16 @@ fn requests(list: &mut PassList, run: &Run, studio: &mut Studio, args: &Render) 
     let lights = studio.draw_scene(list, run.head(&args.scene), run.sim.pose())?;
     let (color, depth) = (list.read_texture(studio.targets.color), list.read_texture(studio.targets.depth));
     let counters = studio.draw_hair(list, run.sim.pose(), &lights)?;
-    let positions = run.sim.read_positions(list);
-    Ok(Tickets { color, depth, counters, positions, colors: request_colors(list, run, studio) })
+    let buffers = studio.buffers(run);
+    let mut read = |buffer, bytes: u64, vertices: u32| list.read_buffer(buffer, 0, bytes * u64::from(vertices));
+    let positions = buffers.iter().map(|of| read(of.positions, 16, of.shape.strand_vertices())).collect();
+    let thickness = buffers.iter().map(|of| read(of.thickness, 4, of.shape.guide_vertices())).collect();
+    Ok(Tickets { color, depth, counters, positions, colors: request_colors(list, run, studio), thickness })
 }
 
 /// Reads back the colours of all sections, as the list has just made them.
 pub(crate) fn request_colors(list: &mut PassList, run: &Run, studio: &Studio) -> Vec<Ticket> {
-    let sections = studio.sections.iter().zip(run.sim.buffers());
+    let sections = studio.sections.iter().zip(studio.buffers(run));
     let bytes = |vertices: u32| 8 * u64::from(vertices);
     sections
         .map(|((strands, _), buffers)| list.read_buffer(strands.colors(), 0, bytes(buffers.shape.strand_vertices())))
@@ -101,9 +104,9 @@ pub(crate) fn request_colors(list: &mut PassList, run: &Run, studio: &Studio) ->
 fn strands(run: &mut Run, studio: &Studio, tickets: &Tickets) -> Result<Vec<Strands>> {
     let mut sections = Vec::new();
     for (index, (&positions, &colors)) in tickets.positions.iter().zip(&tickets.colors).enumerate() {
-        let groom = &run.groom.sections[index];
         let (shaded, material) = &studio.sections[index];
-        let thickness = shaded.own_thickness(material).unwrap_or_else(|| groom.interleave(&groom.thickness));
+        let thickness: Vec<f32> = bytemuck::pod_collect_to_vec(&run.fetch(tickets.thickness[index])?);
+        let thickness = shaded.own_thickness(material).unwrap_or(thickness);
         let positions = bytemuck::pod_collect_to_vec(&run.fetch(positions)?);
         let colors = texels(&run.fetch(colors)?).map(|color| color.to_array()).collect();
         sections.push(Strands { positions, colors, thickness });
@@ -113,12 +116,12 @@ fn strands(run: &mut Run, studio: &Studio, tickets: &Tickets) -> Result<Vec<Stra
 
 fn truth(run: &Run, studio: &Studio, strands: &[Strands], depth: &[f32]) -> Result<Truth> {
     let pose = run.sim.pose();
-    let sections = run.groom.sections.iter().zip(&studio.sections).zip(strands);
+    let sections = studio.buffers(run).into_iter().zip(&studio.sections).zip(strands);
     let sections: Vec<_> = sections
-        .map(|((groom, (shaded, material)), strands)| {
+        .map(|((buffers, (shaded, material)), strands)| {
             let uniform = SectionDraw::new(shaded, material, pose).uniform();
             Section {
-                shape: StrandShape::of(groom),
+                shape: buffers.shape,
                 pose,
                 positions: &strands.positions,
                 colors: &strands.colors,

@@ -11,7 +11,7 @@ use crate::run::{Progress, Run};
 use crate::say::say;
 use crate::stats::RenderStats;
 use crate::studio::Studio;
-use crate::{hair_output, passes, reference};
+use crate::{hair_output, interpolate, passes, reference};
 
 /// Simulates all frames and draws those that are wanted.
 pub(crate) fn run(args: &Render) -> Result<()> {
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &Render) -> Result<()> {
     if args.from >= Run::frames(&args.scene) {
         bail!("--from {}: frames are from 0 to {}", args.from, Run::frames(&args.scene) - 1);
     }
-    let mut run = Run::new(&args.scene)?;
+    let mut run = Run::new(&interpolate::scene(args))?;
     let mut studio = Studio::new(&mut run, args)?;
     let frames = Run::frames(&args.scene);
     let progress = Progress::new(frames.into(), "frame");

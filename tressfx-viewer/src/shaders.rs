@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail};
 use glam::Vec3;
 use serde::Serialize;
+use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::{Caps, Format};
 use tressfx_core::body::{Influences, Morph, MorphOffset, SkinnedMesh};
 use tressfx_core::null::NullBackend;
@@ -14,11 +15,12 @@ use tressfx_core::pass::PassList;
 use tressfx_core::shader::{
     Emitted, EntryPoint, Extra, Language, Shader, ShaderSlot, ShaderStage, Stages, StructLayout,
 };
-use tressfx_core::strands::Strands;
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_render::{HairRenderer, OwnLook, RenderDesc};
 use tressfx_sim::body::{BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, Fields};
-use tressfx_sim::{HairSim, SectionDesc, SimParams, SleepParams};
+use tressfx_sim::{HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams};
 
 use crate::cli;
 use crate::groom::Groom;
@@ -138,6 +140,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     };
     sim.allow_sleep(&mut backend, SleepParams::default())?;
     body(&mut backend, &sim, &groom.sections[0])?;
+    interpolations(&mut backend)?;
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
     let own_colors = OwnLook::of(&groom.sections[0]).colors().is_some();
@@ -174,6 +177,19 @@ fn body(backend: &mut NullBackend, sim: &HairSim, strands: &Strands) -> Result<(
     TriangleRoots::new(backend, &mut list, sim, 1, &binding, skinning.mesh_vertices())?;
     let of = vec![Influences::rigid(0); strands.order.len()];
     BoneRoots::new(backend, &mut list, (sim, 1), strands, &of, skinning.palette())?;
+    Ok(())
+}
+
+/// The kernels of strands between guides: a mean of them, and all that there is.
+fn interpolations(backend: &mut NullBackend) -> Result<()> {
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Z].iter().flat_map(|&root| [root, root + Vec3::Y].map(Vec3::into));
+    let asset = HairAsset::new("guides", AssetFormat::Builtin, points.collect(), vec![2; 3]);
+    let guides = Strands::new(&asset, &StrandOptions::default())?;
+    let buffers = StrandBuffers::new(backend, StrandShape::of(&guides), Vec3::ZERO)?;
+    let all = InterpolationParams { clump: 0.5, noise: 0.1, shorter: 0.2, ..InterpolationParams::default() };
+    for params in [InterpolationParams::default(), all] {
+        Interpolation::new(backend, &mut PassList::new(), (&buffers, &guides), 1, &params)?;
+    }
     Ok(())
 }
 

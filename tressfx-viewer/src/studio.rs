@@ -5,15 +5,18 @@ use glam::Quat;
 use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Format, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
+use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Pose, View};
 use tressfx_render::{
     Counters, HAIR_FORMAT, HairRenderer, LightPlace, Lights, LodDesc, Material, RenderDesc, SectionDraw, ShadedStrands,
     StrandInfo, Targets, Technique, VELOCITY_FORMAT, ViewDraw,
 };
+use tressfx_sim::Interpolation;
 use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
+use crate::interpolate;
 use crate::own_look::Textures;
 use crate::run::Run;
 use crate::stats::RenderStats;
@@ -41,6 +44,8 @@ pub(crate) struct Studio {
     pub(crate) sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
     lod: Option<LodDesc>,
+    /// A section each, where strands are made between guides.
+    interpolations: Vec<Interpolation>,
 }
 
 impl Studio {
@@ -66,10 +71,23 @@ impl Studio {
             opaque.push(body.reached());
         }
         let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
-        for (index, (strands, buffers)) in run.groom.sections.iter().zip(run.sim.buffers()).enumerate() {
-            let section = ShadedStrands::new(backend, *buffers, StrandInfo::new(strands))?;
+        let interpolations = match args.interpolate {
+            None => Vec::new(),
+            Some(count) => {
+                let groom = (&run.groom, &run.sim);
+                interpolate::between(count, (backend, &mut uploads), groom, &run.params.interpolation)?
+            }
+        };
+        for (index, strands) in run.groom.sections.iter().enumerate() {
+            let (buffers, info, look) = match interpolations.get(index) {
+                None => (run.sim.buffers()[index], StrandInfo::new(strands), textures.look(strands)?),
+                Some(between) => {
+                    let (info, look) = interpolate::look(between, strands, &textures)?;
+                    (*between.buffers(), info, look)
+                }
+            };
+            let section = ShadedStrands::new(backend, buffers, info)?;
             let section = if velocity_output { section.with_past(backend)? } else { section };
-            let look = textures.look(strands)?;
             own_colors |= look.colors().is_some();
             let section = section.with_own_look(backend, &mut uploads, &look)?;
             sections.push((section, material(args, *run.params.material(index))));
@@ -99,7 +117,16 @@ impl Studio {
             sections,
             renderer,
             lod,
+            interpolations,
         })
+    }
+
+    /// The buffers of the strands that are drawn, a section each.
+    pub(crate) fn buffers(&self, run: &Run) -> Vec<StrandBuffers> {
+        let simulated = run.sim.buffers().iter().enumerate();
+        simulated
+            .map(|(index, &own)| self.interpolations.get(index).map_or(own, |between| *between.buffers()))
+            .collect()
     }
 
     /// Turns the lights to so many degrees about the vertical axis from where they stand.
@@ -123,12 +150,13 @@ impl Studio {
         self.draw_hair(list, pose, &lights)
     }
 
-    /// Records the shadows and what is opaque. Gives the lights with what they see of it.
+    /// Records strands between guides, the shadows and what is opaque. Gives the lights with what they see of it.
     pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
         let lights = self.light_depth.draw(list, &self.lights, &meshes, head)?;
         let sections = draws(&self.sections, pose, &self.view, self.lod.as_ref());
+        interpolate::record(&self.interpolations, list, &sections);
         self.renderer.cast(list, &lights, &sections)?;
         let shadows = self.renderer.shadow_bindings();
         let Self { view, targets, scene, .. } = self;

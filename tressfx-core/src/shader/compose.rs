@@ -11,7 +11,7 @@ pub type Module = (&'static str, &'static str);
 
 /// The modules that core offers to every shader.
 pub fn shared_modules() -> &'static [Module] {
-    &[("grid", include_str!("../../shaders/grid.wgsl"))]
+    &[("grid", include_str!("../../shaders/grid.wgsl")), ("hash", include_str!("../../shaders/hash.wgsl"))]
 }
 
 /// Where a shader comes from.

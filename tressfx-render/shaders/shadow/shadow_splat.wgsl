@@ -4,8 +4,9 @@
 import package::frames::{SKY, ShadowGrid, ShadowFrameUniform, cell_at, in_frame, place_in, shrinks_by};
 import package::grid::{GROUP, thread_index};
 import package::grids::{grid_of, shadow};
+import package::hash::hash;
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, hash, stepped, strands_of};
+import package::section::{SectionUniform, stepped, strands_of};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;

@@ -1,5 +1,7 @@
 // What every kernel knows of the section that it draws: its counts and its material.
 
+import package::hash::hash;
+
 // What of a section is drawn: an even sample of its strands, and of those each vertex `step`, the root and the tip.
 struct LodUniform {
     // How many, of each strand how many vertices.
@@ -70,13 +72,6 @@ fn strands_of(lod: LodUniform) -> f32 {
 // Width of a strand as a share of what it has among others.
 fn faded(lod: LodUniform, strand: u32) -> f32 {
     return select(1.0, lod.fade, strand + 1u == lod.strands);
-}
-
-// A number in [0, 1) that looks random, the same on every device: PCG-RXS-M-XS.
-fn hash(seed: u32) -> f32 {
-    let state = seed * 747796405u + 2891336453u;
-    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return f32(((word >> 22u) ^ word) >> 8u) / 16777216.0;
 }
 
 // A number in [-1, 1) for a strand, half of which it shares with the strands that follow the same guide.
