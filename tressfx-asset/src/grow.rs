@@ -170,7 +170,7 @@ pub struct SkinPlace {
     pub normal: DVec3,
 }
 
-/// A groom on a mesh in its bind pose, in the unit of the mesh.
+/// A groom on a mesh in its bind pose, in the unit of the mesh. Where the mesh has texture coordinates, strands have those of their roots.
 ///
 /// # Errors
 /// A mesh that is not sound, a number outside of its range, fewer than one strand on all of the mesh, maps on a mesh without texture coordinates or with another
@@ -191,7 +191,12 @@ pub fn grow(mesh: &SkinnedMesh, growth: &Growth) -> Result<HairAsset, GrowError>
     growth.style(&roots, &mut points);
     let points = points.iter().map(|point| point.as_vec3().to_array()).collect();
     let counts = vec![growth.vertices; strands];
-    Ok(HairAsset::new(format!("grown on {}", mesh.name), AssetFormat::TressFx4, points, counts))
+    let mut asset = HairAsset::new(format!("grown on {}", mesh.name), AssetFormat::TressFx4, points, counts);
+    if !mesh.uvs.is_empty() {
+        let uvs = roots.places.iter().map(|place| skin.uv(place).map(|part| part as f32));
+        asset.strand_uvs = Some(uvs.collect());
+    }
+    Ok(asset)
 }
 
 /// Places on a mesh, as far from each other as their density lets them be: the roots of [`grow`].

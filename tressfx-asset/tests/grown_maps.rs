@@ -133,10 +133,15 @@ fn strands(asset: &HairAsset) -> Vec<Vec<Vec3>> {
 }
 
 #[test]
-fn lengths_are_those_of_the_map() {
+fn lengths_are_those_of_the_map_and_roots_know_where_they_are() {
     let length_map = Some(map(256, |x, _| 0.1 + 0.9 * x));
     let growth = Growth { amount: Amount::Count(500), length: 0.5, length_map, variation: 0.0, ..Growth::default() };
-    for strand in strands(&grow(&square(), &growth).unwrap()) {
+    let asset = grow(&square(), &growth).unwrap();
+    for (strand, uv) in strands(&asset).iter().zip(asset.strand_uvs.as_ref().unwrap()) {
+        assert!(
+            Vec2::from(*uv).distance(0.5 * Vec2::new(strand[0].x, strand[0].z)) < 1e-6,
+            "the texture coordinates of the root"
+        );
         let length: f32 = strand.windows(2).map(|edge| edge[0].distance(edge[1])).sum();
         let x = 0.5 * strand[0].x;
         // At the edges of the picture the other side shines in.
