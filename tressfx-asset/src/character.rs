@@ -1,8 +1,8 @@
 //! Characters: skinned meshes with joints, morph targets and animations, from glTF 2.0 (`.glb`, `.gltf`).
 //!
 //! All meshes of a file become one, so that hair can be bound to it as a whole. A mesh without a skin gets its node as its only joint. What is
-//! kept are positions, normals, triangles, up to four joints a vertex, morph targets of positions and normals, and animations; materials, textures,
-//! cameras and lights are passed over.
+//! kept are positions, normals, triangles, the first texture coordinates where all of it has them, up to four joints a vertex, morph targets of positions and normals, and
+//! animations; materials, textures, cameras and lights are passed over.
 //!
 //! The bind pose is that of the file: vertices as they are stored, and those of a mesh without a skin as their node places them at rest. Where a skeleton has
 //! another scale than the mesh (an exporter that writes centimetres below a node that scales them to metres), vertices are brought into the space of its

@@ -4,7 +4,7 @@ mod primitives;
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use thiserror::Error;
 
 use tressfx_core::body::{BodyError, Influences, SkinnedMesh};
@@ -55,6 +55,9 @@ pub enum MeshError {
         /// The vertex, from 0.
         vertex: usize,
     },
+    /// The file is no body that hair can grow on.
+    #[error(transparent)]
+    Body(#[from] BodyError),
     /// The file has more vertices than a 32-bit index reaches.
     #[error("{file}: more than 2^32 vertices")]
     TooLarge {
@@ -80,18 +83,8 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Mesh::read`].
-    pub fn from_obj(file: &str, mut bytes: &[u8]) -> Result<Self, MeshError> {
-        let options =
-            tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-        let (models, _) = tobj::load_obj_buf(&mut bytes, &options, |_| Err(tobj::LoadError::OpenFileFailed))
-            .map_err(|source| MeshError::Obj { file: file.to_owned(), source })?;
-        let mut mesh = Self::default();
-        for model in &models {
-            u32::try_from(mesh.positions.len() + model.mesh.positions.len())
-                .map_err(|_| MeshError::TooLarge { file: file.to_owned() })?;
-            mesh.append(&Self::from_model(&model.mesh));
-        }
-        mesh.checked(file)
+    pub fn from_obj(file: &str, bytes: &[u8]) -> Result<Self, MeshError> {
+        Ok(load(file, bytes)?.0)
     }
 
     /// Adds another mesh.
@@ -114,7 +107,7 @@ impl Mesh {
             triangles: self.indices.as_chunks::<3>().0.to_vec(),
             joints: vec!["root".to_owned()],
             influences: vec![Influences::rigid(0); self.positions.len()],
-            morphs: Vec::new(),
+            ..SkinnedMesh::default()
         };
         mesh.check()?;
         Ok(mesh)
@@ -148,6 +141,36 @@ impl Mesh {
             None => Ok(self),
         }
     }
+}
+
+/// Reads a Wavefront `.obj` file as the skin of a body whose only joint is `root`, with its texture coordinates where all of it has them. A vertex with several
+/// of them becomes several vertices.
+///
+/// # Errors
+/// As [`Mesh::read`].
+pub fn skinned_obj(file: &str, bytes: &[u8]) -> Result<SkinnedMesh, MeshError> {
+    let (mesh, uvs) = load(file, bytes)?;
+    let mesh = SkinnedMesh { uvs, ..mesh.skinned(file)? };
+    mesh.check()?;
+    Ok(mesh)
+}
+
+/// A mesh, and its texture coordinates from the upper left corner down; none where a part of it has none.
+fn load(file: &str, mut bytes: &[u8]) -> Result<(Mesh, Vec<Vec2>), MeshError> {
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
+    let (models, _) = tobj::load_obj_buf(&mut bytes, &options, |_| Err(tobj::LoadError::OpenFileFailed))
+        .map_err(|source| MeshError::Obj { file: file.to_owned(), source })?;
+    let (mut mesh, mut uvs) = (Mesh::default(), Vec::new());
+    for model in &models {
+        u32::try_from(mesh.positions.len() + model.mesh.positions.len())
+            .map_err(|_| MeshError::TooLarge { file: file.to_owned() })?;
+        mesh.append(&Mesh::from_model(&model.mesh));
+        uvs.extend(model.mesh.texcoords.as_chunks::<2>().0.iter().map(|&[u, v]| Vec2::new(u, 1.0 - v)));
+    }
+    if uvs.len() != mesh.positions.len() {
+        uvs.clear();
+    }
+    Ok((mesh.checked(file)?, uvs))
 }
 
 /// Normals of vertices from the faces around them, weighted by area; up where a vertex has no face with an area.

@@ -2,6 +2,8 @@
 
 #[path = "support/assets.rs"]
 mod assets;
+#[path = "support/bodies.rs"]
+mod bodies;
 #[path = "support/memory.rs"]
 mod memory;
 
@@ -9,6 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use assets::folder;
+use bodies::{SMALL_MESH, small_bones, small_gltf, small_skin};
 use glam::{Affine3A, DVec3, Quat, Vec3};
 use tressfx_asset::character::{Character, read_bytes};
 use tressfx_asset::pc2::PointCache;
@@ -139,86 +142,6 @@ fn ratboy_has_bones_for_every_strand_and_a_skinned_body() {
     let error = mohawk.on_joints("mohawk", &["nobody".to_owned()]).unwrap_err().to_string();
     assert!(error.contains("strand 0") && error.contains("absent"), "{error}");
     assert_eq!(mohawk.on_joints("mohawk", &mohawk.bones).unwrap(), mohawk.strands);
-}
-
-/// A `.tfxbone` of two bones and one strand.
-fn small_bones() -> Vec<u8> {
-    let mut out = 2i32.to_le_bytes().to_vec();
-    for (index, name) in [(0i32, b"hips\0"), (1, b"head\0")] {
-        out.extend(index.to_le_bytes());
-        out.extend(5i32.to_le_bytes());
-        out.extend(name);
-    }
-    out.extend(1i32.to_le_bytes());
-    out.extend(0i32.to_le_bytes());
-    for (bone, weight) in [(1i32, 0.5f32), (0, 0.25), (0, 0.0), (0, 0.0)] {
-        out.extend(bone.to_le_bytes());
-        out.extend(weight.to_le_bytes());
-    }
-    out
-}
-
-fn small_skin() -> Vec<u8> {
-    let mut out = vec![0; 268 + 24];
-    let mut put = |at: usize, bytes: [u8; 4]| out[at..at + 4].copy_from_slice(&bytes);
-    put(0, 1u32.to_le_bytes());
-    put(4, 1u32.to_le_bytes());
-    put(136, 268u32.to_le_bytes());
-    put(268 + 4, 7u32.to_le_bytes());
-    put(268 + 8, 0.25f32.to_le_bytes());
-    put(268 + 16, 0.75f32.to_le_bytes());
-    out
-}
-
-const SMALL_MESH: &str = "# mesh\r\nnumOfBones 1\r\n0 root\r\nnumOfVertices 3\r\n0 0 0 0 0 0 1 0 0 0 0 1 0 0 0\r\n\
-                          1 1 0 0 0 0 1 0 0 0 0 0.5 0 0 0\r\n2 0 1 0 0 0 1 0 0 0 0 1 0 0 0\r\nnumOfTriangles 1\r\n0 0 1 2\r\n";
-
-/// A triangle with two joints, one below a node that enlarges a hundred times, a morph target and an animation of all properties.
-fn small_gltf() -> String {
-    let mut data = Vec::new();
-    let mut views = Vec::new();
-    let mut put = |values: &[f32]| {
-        views.push(format!(r#"{{"buffer":0,"byteOffset":{},"byteLength":{}}}"#, data.len(), 4 * values.len()));
-        data.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    };
-    put(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
-    put(&[0.5, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
-    put(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
-    put(&[0.0, 1.0]);
-    put(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
-    put(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    put(&[0.0, 1.0]);
-    let joints = data.len();
-    data.extend([0u8, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0]);
-    views.push(format!(r#"{{"buffer":0,"byteOffset":{joints},"byteLength":12}}"#));
-    use base64::Engine;
-    let uri = base64::engine::general_purpose::STANDARD.encode(&data);
-    let accessor = |view: usize, count: usize, kind: &str, component: u32| {
-        let range = if view == 0 { r#","min":[0,0,0],"max":[1,1,0]"# } else { "" };
-        format!(r#"{{"bufferView":{view},"count":{count},"type":"{kind}","componentType":{component}{range}}}"#)
-    };
-    let accessors = [
-        accessor(0, 3, "VEC3", 5126),
-        accessor(1, 3, "VEC4", 5126),
-        accessor(2, 3, "VEC3", 5126),
-        accessor(3, 2, "SCALAR", 5126),
-        accessor(4, 2, "VEC4", 5126),
-        accessor(5, 6, "VEC3", 5126),
-        accessor(6, 2, "SCALAR", 5126),
-        accessor(7, 3, "VEC4", 5121),
-    ];
-    format!(
-        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{uri}"}}],
-"bufferViews":[{}],"accessors":[{}],
-"nodes":[{{"name":"big","scale":[100,100,100],"children":[1]}},{{"name":"tip"}},{{"mesh":0,"skin":0}}],
-"skins":[{{"joints":[0,1]}}],
-"meshes":[{{"weights":[0.5],"primitives":[{{"attributes":{{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":7}},"targets":[{{"POSITION":2}}]}}]}}],
-"animations":[{{"name":"all","samplers":[{{"input":3,"output":4}},{{"input":3,"output":5,"interpolation":"CUBICSPLINE"}},{{"input":3,"output":6,"interpolation":"STEP"}}],
-"channels":[{{"sampler":0,"target":{{"node":1,"path":"rotation"}}}},{{"sampler":1,"target":{{"node":1,"path":"translation"}}}},{{"sampler":2,"target":{{"node":2,"path":"weights"}}}}]}}]}}"#,
-        data.len(),
-        views.join(","),
-        accessors.join(",")
-    )
 }
 
 #[test]
@@ -364,12 +287,17 @@ fn mutate(name: &str, file: &[u8], reader: Reader) {
 
 #[test]
 fn changed_files_are_read_or_refused() {
-    mutate("gltf", small_gltf().as_bytes(), read_gltf);
-    mutate("tfxbone", &small_bones(), |bytes| bones::read("fuzz", bytes).map(drop));
-    mutate("tfxmesh", SMALL_MESH.as_bytes(), |bytes| tfxmesh::read("fuzz", bytes).map(drop));
-    mutate("tfxskin", &small_skin(), |bytes| tfxskin::read("fuzz", bytes).map(drop));
-    let cache = PointCache { points: 2, start_frame: 0.0, sample_rate: 1.0, positions: vec![Vec3::ONE; 6] };
-    mutate("pc2", &pc2::to_bytes("cache", &cache).unwrap(), |bytes| pc2::read("fuzz", bytes).map(drop));
+    for (name, files) in bodies::all() {
+        let reader: Reader = match name {
+            "gltf" => read_gltf,
+            "tfxbone" => |bytes| bones::read("fuzz", bytes).map(drop),
+            "tfxmesh" => |bytes| tfxmesh::read("fuzz", bytes).map(drop),
+            "tfxskin" => |bytes| tfxskin::read("fuzz", bytes).map(drop),
+            "pc2" => |bytes| pc2::read("fuzz", bytes).map(drop),
+            other => panic!("{other} has no reader here"),
+        };
+        files.iter().for_each(|file| mutate(name, file, reader));
+    }
 }
 
 #[test]

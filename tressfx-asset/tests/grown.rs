@@ -1,7 +1,7 @@
 //! Hair grown on a mesh: even by area, far apart, the same each time.
 
 use glam::{DVec3, Vec3};
-use tressfx_asset::grow::{GrowError, Growth, SkinPlace, grow, roots};
+use tressfx_asset::grow::{Amount, Direction, GrowError, Growth, SkinPlace, grow};
 use tressfx_core::body::{Influences, SkinnedMesh};
 
 /// A square of 2 by 2 in the plane y = 0 of triangles whose sizes differ by a factor of hundreds, and a far smaller one above it.
@@ -23,6 +23,10 @@ fn square() -> SkinnedMesh {
     mesh.normals = vec![Vec3::Y; mesh.positions.len()];
     mesh.influences = vec![Influences::rigid(0); mesh.positions.len()];
     mesh
+}
+
+fn roots(mesh: &SkinnedMesh, density: f64, seed: u64) -> Result<Vec<SkinPlace>, GrowError> {
+    tressfx_asset::grow::roots(mesh, &Growth { amount: Amount::Density(density), seed, ..Growth::default() })
 }
 
 fn nearest(places: &[SkinPlace], of: usize) -> f64 {
@@ -87,7 +91,7 @@ fn hair_does_not_part_at_the_edges_of_flat_triangles() {
         triangles: vec![[0, 1, 2], [2, 1, 3], [4, 6, 5], [6, 7, 5]],
         joints: vec!["root".into()],
         influences: vec![Influences::rigid(0); 8],
-        morphs: Vec::new(),
+        ..SkinnedMesh::default()
     };
     let places = roots(&mesh, 2000.0, 0).unwrap();
     let near_ridge: Vec<_> = places.iter().filter(|place| place.position.x.abs() < 0.03).collect();
@@ -97,7 +101,12 @@ fn hair_does_not_part_at_the_edges_of_flat_triangles() {
 
 #[test]
 fn strands_are_as_asked_for_and_the_same_each_time() {
-    let growth = Growth { density: 100.0, length: 0.3, comb: Vec3::X, ..Growth::default() };
+    let growth = Growth {
+        amount: Amount::Density(100.0),
+        length: 0.3,
+        direction: Direction::Comb(Vec3::X),
+        ..Growth::default()
+    };
     let asset = grow(&square(), &growth).unwrap();
     asset.check().unwrap();
     assert_eq!(asset.points, grow(&square(), &growth).unwrap().points);
@@ -114,13 +123,13 @@ fn strands_are_as_asked_for_and_the_same_each_time() {
     }
     let mesh = square();
     for (wrong, name) in [
-        (Growth { density: f64::NAN, ..growth.clone() }, "density"),
-        (Growth { density: 1e12, ..growth.clone() }, "density times the area of the mesh"),
-        (Growth { density: 1e-3, ..growth.clone() }, "density times the area of the mesh"),
+        (Growth { amount: Amount::Density(f64::NAN), ..growth.clone() }, "density"),
+        (Growth { amount: Amount::Density(1e12), ..growth.clone() }, "density times the area of the mesh"),
+        (Growth { amount: Amount::Density(1e-3), ..growth.clone() }, "density times the area of the mesh"),
         (Growth { length: 0.0, ..growth.clone() }, "length"),
         (Growth { lie: 1.5, ..growth.clone() }, "lie"),
         (Growth { vertices: 1, ..growth.clone() }, "vertices"),
-        (Growth { comb: Vec3::NAN, ..growth.clone() }, "comb"),
+        (Growth { direction: Direction::Comb(Vec3::NAN), ..growth.clone() }, "comb"),
     ] {
         match grow(&mesh, &wrong).unwrap_err() {
             GrowError::Number { name: found, .. } => assert_eq!(found, name),

@@ -3,7 +3,7 @@
 //! A vertex is `p + sum(m_i * morph_i)`, then the sum of what the matrices of its joints make of that, each by its weight: linear blend skinning, as
 //! glTF 2.0 has it. With the identity for every joint a mesh is in its bind pose, in which hair is bound to it.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use thiserror::Error;
 
 /// The joints that move a vertex or a strand, and by what share. Weights sum to 1; a joint without weight is 0.
@@ -78,6 +78,8 @@ pub struct SkinnedMesh {
     pub influences: Vec<Influences>,
     /// Morph targets.
     pub morphs: Vec<Morph>,
+    /// Texture coordinates, one a vertex, or none at all. (0, 0) is the upper left corner of a picture, (1, 1) the lower right one.
+    pub uvs: Vec<Vec2>,
 }
 
 /// A pose of a [`SkinnedMesh`].
@@ -164,6 +166,10 @@ impl SkinnedMesh {
                 return Err(BodyError::Count { mesh: mesh(), what, found, expected: vertices });
             }
         }
+        if !(self.uvs.is_empty() || self.uvs.len() == vertices) {
+            let (what, found) = ("texture coordinates", self.uvs.len());
+            return Err(BodyError::Count { mesh: mesh(), what, found, expected: vertices });
+        }
         let corners = self.triangles.iter().enumerate();
         let corners = corners.flat_map(|(place, corners)| corners.map(|index| ("triangle", place, index, vertices)));
         let joints = self.influences.iter().enumerate();
@@ -186,6 +192,9 @@ impl SkinnedMesh {
         }
         if let Some(place) = self.normals.iter().position(|normal| !normal.is_finite()) {
             return value("normal", place);
+        }
+        if let Some(place) = self.uvs.iter().position(|uv| !uv.is_finite()) {
+            return value("texture coordinate", place);
         }
         let sums_to_1 = |of: &Influences| (of.weights.iter().sum::<f32>() - 1.0).abs() < 1e-3;
         if let Some(place) = self.influences.iter().position(|of| !sums_to_1(of)) {

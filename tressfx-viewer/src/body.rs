@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use tressfx_asset::character::{Character, read_bytes};
-use tressfx_asset::mesh::Mesh;
+use tressfx_asset::mesh::{Mesh, skinned_obj};
 use tressfx_asset::{FileKind, bones, tfxmesh};
 use tressfx_core::backend::Backend;
 use tressfx_core::body::{MeshPose, SkinnedMesh};
@@ -47,7 +47,7 @@ pub(crate) fn character(path: &Path) -> Result<Character> {
     Ok(match FileKind::of(&data) {
         FileKind::Character => read_bytes(&name, &data, Some(path.parent().unwrap_or(Path::new(""))))?,
         FileKind::SkinnedMesh => tfxmesh::read(&name, &data)?.into(),
-        _ => Mesh::from_obj(&name, &data)?.skinned(&name)?.into(),
+        _ => skinned_obj(&name, &data)?.into(),
     })
 }
 

@@ -167,7 +167,7 @@ fn body(backend: &mut NullBackend, sim: &HairSim, strands: &Strands) -> Result<(
         triangles: vec![[0, 1, 2]],
         joints: vec!["root".into()],
         influences: vec![Influences::rigid(0); 3],
-        morphs: Vec::new(),
+        ..SkinnedMesh::default()
     };
     let offsets = vec![MorphOffset { vertex: 0, position: glam::Vec3::Y, normal: glam::Vec3::ZERO }];
     let mesh = SkinnedMesh { morphs: vec![Morph { name: "morph".into(), offsets }], ..joint.clone() };

@@ -57,6 +57,50 @@ fn hair_that_was_grown_is_bound_where_it_grew() {
 }
 
 #[test]
+fn hair_grows_by_pictures_over_a_body() {
+    let folder = Folder::new("maps");
+    let at = |name: &str| folder.0.join(name);
+    // A square of 1 by 1, on whose right half hair grows.
+    fs::write(
+        at("square.obj"),
+        "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 1\nvt 1 1\nvt 1 0\nvt 0 0\nf 1/1 3/3 2/2\nf 1/1 4/4 3/3\n",
+    )
+    .unwrap();
+    let half = |x: u32| if (64..120).contains(&x) { 1.0 } else { 0.0f32 };
+    image::GrayImage::from_fn(128, 2, |x, _| image::Luma([(255.0 * half(x)) as u8])).save(at("half.png")).unwrap();
+    let deep = image::ImageBuffer::from_fn(1, 1, |_, _| image::Luma([32768u16]));
+    deep.save(at("deep.png")).unwrap();
+    image::RgbImage::from_pixel(1, 1, image::Rgb([255, 128, 128])).save(at("right.png")).unwrap();
+    let words = "grow square.obj --guides 200 --density-map half.png --length 0.4 --length-map deep.png --variation 0 --noise 0";
+    folder.says(&format!("{words} --direction-map right.png --lie 1 --out right.tfx"));
+    let asset = tressfx_asset::read(at("right.tfx")).unwrap();
+    assert_eq!(asset.strand_count(), 200);
+    for strand in asset.ranges().map(|range| &asset.points[range]) {
+        let (root, tip) = (glam::Vec3::from(strand[0]), glam::Vec3::from(strand[7]));
+        assert!(root.x > 0.49 && root.x < 0.95 && tip.x > root.x + 0.1, "{root} {tip}");
+        let length: f32 = strand.windows(2).map(|pair| glam::Vec3::from(pair[0]).distance(pair[1].into())).sum();
+        assert!((length / 0.2 - 1.0).abs() < 1e-3, "16 bits of half the length are {length}");
+    }
+    for (more, says) in [
+        ("--direction-map right.png --comb 1,0,0", "cannot be used with"),
+        ("--density 5", "cannot be used with"),
+        ("--clump 2", "--clump <0..1>"),
+        ("--frizz 2", "--frizz <0..1>"),
+        ("--clumps 500", "clumps is 500"),
+        ("--curl-radius 0.1", "--curl-length <LENGTH>"),
+        ("--curl-radius 0.1 --curl-length 0.01", "curl length is 0.01"),
+        ("--direction-map square.obj", "square.obj"),
+        ("--direction-map none.png", "none.png"),
+    ] {
+        let error = folder.refuses(&format!("{words} {more} --out x.tfx"));
+        assert!(error.contains(says), "{more}: {error}");
+    }
+    let error = folder.refuses("grow body.obj --guides 9 --length 1 --density-map half.png --out x.tfx");
+    assert!(error.contains("body.obj has no texture coordinates") && error.contains("density map"), "{error}");
+    assert!(folder.refuses("grow body.obj --length 1 --out x.tfx").contains("--density <N>|--guides <N>"));
+}
+
+#[test]
 fn files_of_characters_are_reported() {
     let folder = Folder::new("reported");
     let said = folder.says("info body.tfxmesh");

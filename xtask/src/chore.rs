@@ -61,6 +61,25 @@ const PICTURES: [(&str, &str); 34] = [
         "TRESSFX_ASSETS/tressfx41_ratboy/Ratboy_mohawk.tfx --motion shake --fps 24 --from 48 --frames 80 --size 300x300",
     ),
 ];
+/// Pictures of grooms that are grown for them: what is typed after `tressfx grow`, but for the fox and `--out`.
+const GROWN: [(&str, &str); 3] = [
+    (
+        "grow-maps.png",
+        "--guides 70000 --density-map docs/textures/fox-density.png --length 10 --length-map docs/textures/fox-length.png --vertices 6 --comb 0,-0.4,-1 --lie 0.85 --noise 0.2 --clumps 3000 --clump 0.5",
+    ),
+    (
+        "grow-clumps.png",
+        "--guides 60000 --density-map docs/textures/fox-density.png --length 9 --length-map docs/textures/fox-length.png --vertices 10 --comb 0,-1,-0.8 --lie 0.9 --noise 0.3 --frizz 0.1 --clumps 3000 --clump 0.9",
+    ),
+    (
+        "grow-curls.png",
+        "--guides 60000 --density-map docs/textures/fox-density.png --length 16 --length-map docs/textures/fox-length.png --vertices 48 --comb 0,-1,-0.2 --lie 0.8 --noise 0.2 --frizz 0.05 --clumps 1500 --clump 0.9 --curl-radius 1.2 --curl-length 4.5",
+    ),
+];
+/// What is typed to render them.
+const FOX_LOOK: &str = "--frames 0 --size 720x480 --camera 175,66,70,0,40,-11,36 --root-texture docs/textures/fox-colors.png --scattering fibre";
+/// What they are grown on.
+const FOX: &str = "TRESSFX_ASSETS/gltf_fox/Fox.glb";
 /// Where real grooms are, in the words above and in the environment.
 const ASSETS: &str = "TRESSFX_ASSETS";
 
@@ -120,18 +139,31 @@ pub(crate) fn docs() -> Result<(), String> {
     driver::ensure(&tressfx)?;
     let folder = root().join("docs").join("pictures");
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let folder = folder.display();
     for (picture, words) in PICTURES {
-        println!("tressfx render {words} --out docs/pictures/{picture}");
-        let assets = std::env::var(ASSETS);
-        if words.contains(ASSETS) && assets.is_err() {
-            println!("  left as it is: {ASSETS} is not set");
-            continue;
-        }
-        let words = words.split(' ').map(|word| word.replace(ASSETS, assets.as_deref().unwrap_or_default()));
-        let mut command = Command::new(&tressfx);
-        run(command.arg("render").args(words).arg("--out").arg(folder.join(picture)))?;
+        typed(&tressfx, &format!("render {words} --out {folder}/{picture}"))?;
+    }
+    let out = root().join("out");
+    std::fs::create_dir_all(&out).map_err(|error| format!("{}: {error}", out.display()))?;
+    let groom = out.join("grown.tfx");
+    let groom = groom.display();
+    for (picture, grow) in GROWN {
+        typed(&tressfx, &format!("grow {FOX} {grow} --out {groom}"))?;
+        typed(&tressfx, &format!("render {groom} --character {FOX} {FOX_LOOK} --out {folder}/{picture}"))?;
     }
     Ok(())
+}
+
+/// Runs the program with what would be typed after its name, unless it needs real grooms that are not there.
+fn typed(tressfx: &Path, words: &str) -> Result<(), String> {
+    println!("tressfx {words}");
+    let assets = std::env::var(ASSETS);
+    if words.contains(ASSETS) && assets.is_err() {
+        println!("  left as it is: {ASSETS} is not set");
+        return Ok(());
+    }
+    let words = words.split(' ').map(|word| word.replace(ASSETS, assets.as_deref().unwrap_or_default()));
+    run(Command::new(tressfx).current_dir(root()).args(words))
 }
 
 /// Measures error against run time: of pictures, of the release program unless `--program` names one, or with `--motion` of solvers.

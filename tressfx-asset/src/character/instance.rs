@@ -1,7 +1,7 @@
 //! A mesh of a node, added to the one mesh of a character.
 
 use ::gltf::mesh::{Mode, Primitive, Semantic};
-use glam::{DAffine3, DMat4, Vec3};
+use glam::{DAffine3, DMat4, Vec2, Vec3};
 use tressfx_core::asset::AssetProblem;
 use tressfx_core::body::{Influences, Morph, MorphOffset};
 
@@ -153,7 +153,9 @@ impl Part<'_> {
         let placed = |position: &Vec3| self.skin.placed.transform_point3(position.as_dvec3()).as_vec3();
         let turned = |normal: &Vec3| (turn * normal.as_dvec3()).as_vec3();
         let influences = self.influences(character, primitive, count)?;
+        let uvs = self.uvs(primitive, count)?;
         let mesh = &mut character.mesh;
+        mesh.uvs.extend(uvs);
         mesh.positions.extend(positions.iter().map(placed));
         mesh.normals.extend(normals.iter().map(|normal| turned(normal).normalize_or(Vec3::Y)));
         mesh.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first as u32)));
@@ -184,6 +186,13 @@ impl Part<'_> {
     ) -> Result<Vec<Vec3>, FileError> {
         let vectors = self.arrays.floats::<3>(accessor, &format!("{}, {what}", self.field), count)?;
         Ok(vectors.into_iter().map(Vec3::from).collect())
+    }
+
+    /// The first texture coordinates; none where the primitive has none.
+    fn uvs(&self, primitive: &Primitive<'_>, count: usize) -> Result<Vec<Vec2>, FileError> {
+        let Some(uvs) = primitive.get(&Semantic::TexCoords(0)) else { return Ok(Vec::new()) };
+        let uvs = self.arrays.floats::<2>(&uvs, &format!("{}, texture coordinates", self.field), Some(count))?;
+        Ok(uvs.into_iter().map(Vec2::from).collect())
     }
 
     fn triangles(&self, primitive: &Primitive<'_>, vertices: usize) -> Result<Vec<[u32; 3]>, FileError> {

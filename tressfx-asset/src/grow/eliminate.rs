@@ -1,11 +1,10 @@
 //! Sample elimination: of many places those are left that are far from each other.
 
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
-
-use glam::{DVec3, I64Vec3};
+use std::collections::BinaryHeap;
 
 use super::SkinPlace;
+use super::near::Neighbours;
 
 /// How fast a weight falls with the distance, as in the paper.
 const ALPHA: i32 = 8;
@@ -13,15 +12,19 @@ const ALPHA: i32 = 8;
 /// A weight by whose bits a heap can sort: weights are not negative.
 type Key = (u64, usize);
 
-/// Takes the place with the largest weight away until `wanted` are left. A weight is a sum over the places near by. Places on two sides of a thin
-/// part of the mesh, such as an ear, are near each other and yet take no room from each other.
-pub(super) fn eliminate(places: &[SkinPlace], wanted: usize, area: f64) -> Vec<SkinPlace> {
-    // The radius of the densest packing of so many discs in the area.
-    let radius = (area / (2.0 * 3f64.sqrt() * wanted as f64)).sqrt();
-    let near = Neighbours::new(places, 2.0 * radius);
+/// Half the distance between neighbours in the densest packing of so many places in a square unit.
+pub(super) fn packed_radius(density: f64) -> f64 {
+    (1.0 / (2.0 * 3f64.sqrt() * density)).sqrt()
+}
+
+/// Takes the place with the largest weight away until `wanted` are left, and says which those are. A weight is a sum over the places within the sum of two
+/// radii: at an edge in the density neither side takes much from the other. Places on two sides of a thin part of the mesh, such as an ear, are near each
+/// other and yet take no room from each other.
+pub(super) fn eliminate(places: &[SkinPlace], radii: &[f64], wanted: usize) -> Vec<usize> {
+    let near = Neighbours::new(places, radii);
     let weight = |one: usize, other: usize| {
         let distance = places[one].position.distance(places[other].position);
-        (1.0 - (distance / (2.0 * radius)).min(1.0)).powi(ALPHA)
+        (1.0 - (distance / (radii[one] + radii[other])).min(1.0)).powi(ALPHA)
     };
     let mut weights: Vec<f64> =
         (0..places.len()).map(|one| near.of(one).map(|other| weight(one, other)).sum()).collect();
@@ -45,36 +48,5 @@ pub(super) fn eliminate(places: &[SkinPlace], wanted: usize, area: f64) -> Vec<S
             heap.push((weights[other].to_bits(), Reverse(other)));
         }
     }
-    places.iter().zip(is_left).filter(|(_, is_left)| *is_left).map(|(place, _)| *place).collect()
-}
-
-/// Finds the places within a radius: a grid of cells of that size.
-struct Neighbours<'a> {
-    places: &'a [SkinPlace],
-    radius: f64,
-    cells: HashMap<I64Vec3, Vec<usize>>,
-}
-
-impl<'a> Neighbours<'a> {
-    fn new(places: &'a [SkinPlace], radius: f64) -> Self {
-        let mut cells: HashMap<I64Vec3, Vec<usize>> = HashMap::new();
-        for (index, place) in places.iter().enumerate() {
-            cells.entry(cell(place.position, radius)).or_default().push(index);
-        }
-        Self { places, radius, cells }
-    }
-
-    fn of(&self, place: usize) -> impl Iterator<Item = usize> + '_ {
-        let SkinPlace { position, normal, .. } = self.places[place];
-        let middle = cell(position, self.radius);
-        let around = (0..27).map(move |i| middle + I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        around.filter_map(|cell| self.cells.get(&cell)).flatten().copied().filter(move |&other| {
-            let SkinPlace { position: there, normal: across, .. } = self.places[other];
-            other != place && position.distance(there) < self.radius && normal.dot(across) > 0.0
-        })
-    }
-}
-
-fn cell(position: DVec3, size: f64) -> I64Vec3 {
-    (position / size).floor().as_i64vec3()
+    (0..places.len()).filter(|&place| is_left[place]).collect()
 }
