@@ -279,6 +279,7 @@ fn nothing_of_a_rod_gets_through_at_10_metres_a_second() {
     let indices = box_faces();
     let mut random = Random::new(4);
     let (mut cases, mut met, mut behind, mut deepest) = (0, 0, 0, [0.0f64; FRAMES]);
+    let (mut within, mut past_the_middle) = (0, 0);
     const FRAMES: usize = 20;
     let solid = Solid::new(&floor, &indices);
     for _ in 0..2 {
@@ -307,16 +308,19 @@ fn nothing_of_a_rod_gets_through_at_10_metres_a_second() {
                 cases += 1;
                 met += usize::from(depth > -0.003);
                 behind += usize::from(point.y < -0.025);
+                within += usize::from(depth > 0.0);
+                past_the_middle += usize::from(point.y < 0.0);
                 *deepest = deepest.max(depth);
             }
         }
     }
-    println!("{cases} swept cases, {met} at the surface, {behind} behind, deepest {deepest:.4?} m");
+    println!(
+        "{cases} swept cases, {met} at the surface, {within} of them within, {past_the_middle} past the middle, {behind} behind, deepest {deepest:.4?} m"
+    );
     assert!(met > 1000, "{met} of {cases}");
-    assert_eq!(behind, 0);
-    // While it comes it is a spring that a strand gives way to in few rounds.
-    let most = |frames: &[f64]| frames.iter().copied().fold(0.0, f64::max);
-    assert!(most(&deepest) <= 0.025 && most(&deepest[FRAMES / 2..]) < 0.005, "{deepest:?}");
+    // What lies on the floor is held by springs: it is at the side that it came from, and less deep than a cell is wide, 21 mm.
+    assert_eq!((past_the_middle, behind), (0, 0));
+    assert!(deepest.iter().all(|depth| *depth < 0.005), "{deepest:?}");
 }
 
 /// Hair that begins deep inside of a ball finds its way out, and stays as far away as the margin says.
