@@ -25,7 +25,7 @@ use tressfx_render::{
     Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw,
 };
 use tressfx_sim::body::{Binding, BoneRoots, Skinning, TriangleRoots};
-use tressfx_sim::field::{FieldDesc, Fields};
+use tressfx_sim::field::{FieldDesc, FieldSurface, Fields};
 use tressfx_sim::{
     ClockParams, Collider, HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams, Solver,
     StepInput, Wind,
@@ -205,6 +205,7 @@ fn everything() -> PassList {
     let corners = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Y];
     let mut fields = Fields::new(&mut backend, &mut list, &[FieldDesc::new(&corners, &[0, 1, 2])]).unwrap();
     fields.record(&mut list);
+    FieldSurface::new(&mut backend, &fields, 0).unwrap().record(&mut list);
     let mut sim = HairSim::with_fields(&mut backend, &mut list, &sections, colliders.len(), &fields).unwrap();
     let wind = Wind::new(glam::Vec3::X);
     let turned = Pose { translation: glam::Vec3::X * 0.01, ..Pose::IDENTITY };

@@ -8,6 +8,7 @@
 
 pub(crate) mod build;
 mod error;
+pub(crate) mod surface;
 mod topology;
 
 use glam::{UVec3, Vec3};
@@ -23,6 +24,7 @@ use crate::kernel::Kernels;
 use build::{Body, FieldBuffers, FieldMaker, FieldPasses, HEADER};
 
 pub use error::FieldError;
+pub use surface::{FieldSurface, SurfaceBuffers, SurfaceSize};
 
 /// The most triangles of a mesh: their distances and indices share an integer.
 const MOST_TRIANGLES: usize = 1 << 22;

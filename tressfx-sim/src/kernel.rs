@@ -15,6 +15,9 @@ pub(crate) mod interpolate;
 pub(crate) mod moved;
 pub(crate) mod roots;
 pub(crate) mod skin;
+pub(crate) mod surface_count;
+pub(crate) mod surface_emit;
+pub(crate) mod surface_scan;
 pub(crate) mod tangents;
 pub(crate) mod tressfx;
 pub(crate) mod triangle_roots;
@@ -53,6 +56,7 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("root_frame", include_str!("../shaders/root_frame.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("substitute", include_str!("../shaders/substitute.wgsl")),
+    ("surface", include_str!("../shaders/surface.wgsl")),
     ("symmetric", include_str!("../shaders/symmetric.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
     ("wind", include_str!("../shaders/wind.wgsl")),

@@ -15,6 +15,7 @@ use crate::body::BodyArgs;
 use crate::camera::Camera;
 use crate::collide::Collision;
 use crate::develop::Develop;
+use crate::field_view::Show;
 use crate::grow::Grow;
 use crate::lod::Lod;
 use crate::oit::Oit;
@@ -209,6 +210,9 @@ pub(crate) struct Render {
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,
+    /// What is drawn in place of the meshes that hair collides with
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with = "reference")]
+    pub(crate) show: Option<Show>,
     /// Draw with the reference renderer: rays through fibres as solids, on the CPU
     #[arg(long, conflicts_with = "character")]
     pub(crate) reference: bool,

@@ -6,7 +6,7 @@ use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, Depth, DepthOrder, Format, RasterDesc, TextureDesc};
 use tressfx_core::error::{Label, Result};
 use tressfx_core::id::TextureId;
-use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
+use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::shader::{RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::strands::Bounds;
 use tressfx_core::uniform_array::UniformArray;
@@ -73,7 +73,7 @@ impl LightDepth {
             let mut pass = RasterPass::new(LABEL).depth(depth, Load::Clear(DepthOrder::Standard.far()));
             for MeshDraw { mesh, .. } in meshes {
                 let bindings = self.pipeline.bind(&mesh.bindings(self.views.binding(index)))?;
-                pass = pass.draw(Draw::new(&self.pipeline, &bindings, mesh.index_count, 1));
+                pass = pass.draw(mesh.draw(&self.pipeline, &bindings));
             }
             list.raster(pass);
             let bias = BIAS * 2.0 * self.sphere.1 / TEXELS as f32;

@@ -12,6 +12,7 @@ mod collide;
 mod compare;
 mod convert;
 mod develop;
+mod field_view;
 mod groom;
 mod grow;
 mod hair_output;

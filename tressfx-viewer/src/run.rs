@@ -44,7 +44,9 @@ pub(crate) struct Run {
     /// What is drawn with the hair.
     pub(crate) meshes: Vec<Mesh>,
     /// Of the meshes, if the hair collides with them.
-    fields: Option<Fields>,
+    pub(crate) fields: Option<Fields>,
+    /// Whether fields are made in the rest pose too, where nothing collides.
+    pub(crate) shows_fields: bool,
     /// What the hair collides with; it moves with the head.
     colliders: Vec<Collider<'static>>,
 }
@@ -165,6 +167,7 @@ impl Run {
             wind,
             meshes,
             fields,
+            shows_fields: false,
             colliders,
         })
     }
@@ -180,6 +183,9 @@ impl Run {
         if args.frames == 0 {
             if let Some(body) = &mut self.body {
                 body.pose(&mut list, &mut self.sim, 0.0)?;
+            }
+            if self.shows_fields {
+                self.refit(&mut list)?;
             }
             self.sim.step(&mut list, &StepInput::new(0.0, self.head(args)))?;
             return Ok(list);

@@ -6,11 +6,12 @@ use tressfx_core::backend::{Backend, Blend, BufferDesc, Depth, DepthOrder, Forma
 use tressfx_core::error::{Label, Result};
 use tressfx_core::gpu_struct;
 use tressfx_core::id::BufferId;
-use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
-use tressfx_core::shader::{Binding, Module, RasterPipeline, Shader, ShaderSource, Specialization};
+use tressfx_core::pass::{Count, Draw, Load, PassList, RasterPass};
+use tressfx_core::shader::{Binding, Bindings, Module, RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::view::{Pose, View};
 use tressfx_render::uniforms::ViewUniform;
 use tressfx_render::{Light, Lights, SHADOW_MODULES, Targets, VIEW_MODULE};
+use tressfx_sim::field::SurfaceBuffers;
 
 const LABEL: &str = "viewer.scene";
 
@@ -88,11 +89,11 @@ mod uniform {
 #[derive(Debug)]
 pub struct SceneMesh {
     vertices: BufferId,
-    /// Whether another part of the program frees the vertices.
-    is_borrowed: bool,
     indices: BufferId,
     uniform: BufferId,
-    pub(crate) index_count: u32,
+    count: Count,
+    /// What is freed with it; the others are of another part of the program.
+    own: Vec<BufferId>,
 }
 
 /// A mesh in a frame.
@@ -178,7 +179,7 @@ impl ScenePass {
 
     fn mesh(&self, mesh: &SceneMesh, shadows: &[(&'static str, Binding)]) -> Result<Draw> {
         let bindings = self.mesh.bind(&[&mesh.bindings(self.view.into())[..], shadows].concat())?;
-        Ok(Draw::new(&self.mesh, &bindings, mesh.index_count, 1))
+        Ok(mesh.draw(&self.mesh, &bindings))
     }
 
     /// Frees what it made.
@@ -198,16 +199,12 @@ impl SceneMesh {
         let vertices: Vec<[f32; 4]> =
             pairs.flat_map(|(p, n)| [p.extend(1.0).to_array(), n.extend(0.0).to_array()]).collect();
         let mut buffer = |label, bytes: usize| backend.create_buffer(&BufferDesc::storage(label, bytes.max(32) as u64));
-        let made = Self {
-            vertices: buffer("viewer.scene.vertices", size_of_val(&vertices[..]))?,
-            is_borrowed: false,
-            indices: buffer("viewer.scene.indices", size_of_val(&mesh.indices[..]))?,
-            uniform: uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?,
-            index_count: mesh.indices.len() as u32,
-        };
-        list.upload(made.vertices, 0, &vertices);
-        list.upload(made.indices, 0, &mesh.indices);
-        Ok(made)
+        let vertex_buffer = buffer("viewer.scene.vertices", size_of_val(&vertices[..]))?;
+        let indices = buffer("viewer.scene.indices", size_of_val(&mesh.indices[..]))?;
+        list.upload(vertex_buffer, 0, &vertices);
+        list.upload(indices, 0, &mesh.indices);
+        let count = Count::Direct { vertices: mesh.indices.len() as u32, instances: 1 };
+        Self::of_buffers(backend, [vertex_buffer, indices], count, vec![vertex_buffer, indices])
     }
 
     /// A mesh whose vertices something else writes: two `vec4<f32>` each, position and normal. They are not freed with it.
@@ -222,15 +219,38 @@ impl SceneMesh {
     ) -> Result<Self> {
         let indices = triangles.as_flattened();
         let bytes = size_of_val(indices).max(32) as u64;
-        let made = Self {
-            vertices,
-            is_borrowed: true,
-            indices: backend.create_buffer(&BufferDesc::storage("viewer.scene.indices", bytes))?,
-            uniform: uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?,
-            index_count: indices.len() as u32,
-        };
-        list.upload(made.indices, 0, indices);
-        Ok(made)
+        let index_buffer = backend.create_buffer(&BufferDesc::storage("viewer.scene.indices", bytes))?;
+        list.upload(index_buffer, 0, indices);
+        let count = Count::Direct { vertices: indices.len() as u32, instances: 1 };
+        Self::of_buffers(backend, [vertices, index_buffer], count, vec![index_buffer])
+    }
+
+    /// The surface of a field: how many triangles it has is known on the GPU. Its buffers are not freed with it.
+    ///
+    /// # Errors
+    /// What the backend says when it cannot make a buffer.
+    pub fn of_surface(backend: &mut dyn Backend, surface: &SurfaceBuffers) -> Result<Self> {
+        let count = Count::Indirect { buffer: surface.draw, offset: 0 };
+        Self::of_buffers(backend, [surface.vertices, surface.indices], count, Vec::new())
+    }
+
+    fn of_buffers(
+        backend: &mut dyn Backend,
+        [vertices, indices]: [BufferId; 2],
+        count: Count,
+        mut own: Vec<BufferId>,
+    ) -> Result<Self> {
+        let uniform = uniform_buffer::<uniform::Surface>(backend, "viewer.scene.surface")?;
+        own.push(uniform);
+        Ok(Self { vertices, indices, uniform, count, own })
+    }
+
+    /// Draws all of it.
+    pub(crate) fn draw(&self, pipeline: &RasterPipeline, bindings: &Bindings) -> Draw {
+        match self.count {
+            Count::Direct { vertices, instances } => Draw::new(pipeline, bindings, vertices, instances),
+            Count::Indirect { buffer, offset } => Draw::indirect(pipeline, bindings, buffer, offset),
+        }
     }
 
     pub(crate) fn bindings(&self, view: Binding) -> [(&'static str, Binding); 4] {
@@ -250,8 +270,7 @@ impl SceneMesh {
 
     /// Frees it.
     pub fn destroy(self, backend: &mut dyn Backend) {
-        let own = (!self.is_borrowed).then_some(self.vertices);
-        own.into_iter().chain([self.indices, self.uniform]).for_each(|buffer| backend.destroy(buffer.into()));
+        self.own.into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 

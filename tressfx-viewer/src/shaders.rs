@@ -19,7 +19,7 @@ use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_render::{HairRenderer, OwnLook, RenderDesc};
 use tressfx_sim::body::{BoneRoots, Skinning, TriangleRoots};
-use tressfx_sim::field::{FieldDesc, Fields};
+use tressfx_sim::field::{FieldDesc, FieldSurface, Fields};
 use tressfx_sim::{HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams};
 
 use crate::cli;
@@ -149,12 +149,14 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     Ok(backend.shaders)
 }
 
-/// A field of a mesh that is closed, and one of a mesh that is not.
+/// A field of a mesh that is closed, whose surface is looked at, and one of a mesh that is not.
 fn fields(backend: &mut NullBackend, list: &mut PassList) -> Result<Fields> {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     let faces = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
     let [closed, open] = [&faces[..], &faces[3..]].map(|faces| FieldDesc::new(&corners, faces));
-    Ok(Fields::new(backend, list, &[closed, open])?)
+    let fields = Fields::new(backend, list, &[closed, open])?;
+    FieldSurface::new(backend, &fields, 0)?;
+    Ok(fields)
 }
 
 /// The kernels of a body that the second section grows on, with morph targets and without.

@@ -16,6 +16,7 @@ use tressfx_viewer::light_depth::LightDepth;
 use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Surface, studio_lights};
 
 use crate::cli::{self, Render};
+use crate::field_view::FieldViews;
 use crate::interpolate;
 use crate::own_look::Textures;
 use crate::run::Run;
@@ -39,7 +40,9 @@ pub(crate) struct Studio {
     light_depth: LightDepth,
     scene: ScenePass,
     meshes: Vec<SceneMesh>,
-    /// The same meshes on the CPU.
+    /// What the meshes draw, if it is not the meshes of the run.
+    views: FieldViews,
+    /// The meshes of the run on the CPU.
     pub(crate) opaque: Vec<Mesh>,
     pub(crate) sections: Vec<(ShadedStrands, Material)>,
     renderer: HairRenderer,
@@ -64,10 +67,16 @@ impl Studio {
         }
         let mut uploads = PassList::new();
         let mut opaque = run.meshes.clone();
-        let meshes = opaque.iter().map(|mesh| SceneMesh::new(backend, &mut uploads, mesh)).collect::<Result<_, _>>();
-        let mut meshes: Vec<SceneMesh> = meshes?;
+        let mut meshes: Vec<SceneMesh> = Vec::new();
+        if args.show.is_none() {
+            for mesh in &opaque {
+                meshes.push(SceneMesh::new(backend, &mut uploads, mesh)?);
+            }
+        }
         if let Some(body) = &run.body {
-            meshes.push(body.scene_mesh(backend, &mut uploads)?);
+            if args.show.is_none() {
+                meshes.push(body.scene_mesh(backend, &mut uploads)?);
+            }
             opaque.push(body.reached());
         }
         let (mut sections, mut own_colors, textures) = (Vec::new(), false, Textures::read(args)?);
@@ -104,6 +113,10 @@ impl Studio {
         let first_lights = lights.clone();
         let light_depth = LightDepth::new(backend, &lights, &opaque)?;
         backend.run(&uploads)?;
+        let mut views = FieldViews::default();
+        if args.show.is_some() {
+            (views, meshes) = FieldViews::new(run)?;
+        }
         Ok(Self {
             targets,
             drawn,
@@ -113,6 +126,7 @@ impl Studio {
             light_depth,
             scene,
             meshes,
+            views,
             opaque,
             sections,
             renderer,
@@ -152,6 +166,7 @@ impl Studio {
 
     /// Records strands between guides, the shadows and what is opaque. Gives the lights with what they see of it.
     pub(crate) fn draw_scene(&mut self, list: &mut PassList, head: Pose, pose: Pose) -> Result<Lights> {
+        self.views.record(list);
         let mesh = |mesh| MeshDraw { mesh, surface: Surface::default(), pose: head };
         let meshes: Vec<MeshDraw> = self.meshes.iter().map(mesh).collect();
         let lights = self.light_depth.draw(list, &self.lights, &meshes, head)?;
@@ -215,7 +230,8 @@ impl Studio {
             pixels_with_hair: u64::from(counters.pixels_with_hair),
             ..RenderStats::default()
         };
-        let has_more_room = self.renderer.grow_to_measured(&mut *run.backend, &counters)?;
+        let has_more_room = self.renderer.grow_to_measured(&mut *run.backend, &counters)?
+            | self.views.make_room(run, &mut self.meshes)?;
         self.drawn.oit_bytes = self.renderer.technique_bytes();
         self.drawn.shadow_bytes = self.renderer.shadow_bytes();
         Ok(has_more_room)

@@ -83,6 +83,7 @@ fn what_is_collided_with_is_what_was_asked_for() {
     let [sdf, capsules, none] =
         ["sdf", "capsules", "none"].map(|collide| passes(&["--solver", "tressfx", "--collide", collide]));
     assert!(sdf.contains("hair.sim.field_sign") && sdf.contains("fields (read)"), "{sdf}");
+    assert!(!sdf.contains("hair.sim.surface"), "nobody looks at it: {sdf}");
     assert!(!capsules.contains("field") && capsules.contains("colliders (read)"), "{capsules}");
     assert!(!none.contains("field") && !none.contains("colliders"), "{none}");
     assert_eq!(passes(&["--solver", "tressfx"]), capsules);
@@ -114,4 +115,26 @@ fn the_field_of_a_body_is_made_anew_where_the_body_moves() {
     let (still, walks) = (passes(&[]), passes(&["--animation", "Walk"]));
     assert!(still.contains("fields (read)") && !still.contains("hair.sim.field_sign"), "made once: {still}");
     assert!(walks.contains("hair.sim.skin") && walks.contains("hair.sim.field_sign"), "{walks}");
+}
+
+#[test]
+fn a_field_is_drawn_in_place_of_its_mesh() {
+    let render = |out: &str, words: &[&str]| {
+        let scene = ["render", "builtin:long:40:8", "--frames", "0", "--size", "96x96", "--print-passes", "--out", out];
+        let done = tressfx(&[&scene, words].concat());
+        (done.status.success(), [done.stdout, done.stderr].map(|said| String::from_utf8(said).unwrap()))
+    };
+    let [of_field, of_mesh] = ["field.png", "mesh.png"].map(temporary);
+    let (is_done, [passes, _]) = render(&of_field, &["--collide", "sdf", "--show", "sdf"]);
+    assert!(is_done && passes.contains("hair.sim.field_sign") && passes.contains("hair.sim.surface_emit"), "{passes}");
+    let (is_done, [passes, _]) = render(&of_mesh, &["--collide", "sdf"]);
+    assert!(is_done && !passes.contains("hair.sim.surface"), "{passes}");
+    // The field of a head looks as the head does, but not to the bit.
+    let pictures = [of_field, of_mesh].map(|path| image::open(path).unwrap().to_rgb8());
+    let off = pictures[0].iter().zip(pictures[1].iter()).map(|(one, other)| u64::from(one.abs_diff(*other)));
+    let mean = off.sum::<u64>() as f64 / pictures[0].len() as f64;
+    println!("off by {mean:.2} of 255 in the mean");
+    assert!(mean > 0.0 && mean < 3.0, "{mean}");
+    let (is_done, [_, said]) = render(&temporary("none.png"), &["--show", "sdf"]);
+    assert!(!is_done && said.contains("--show sdf: there is no field; ask for one with --collide sdf"), "{said}");
 }
