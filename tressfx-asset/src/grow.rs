@@ -245,27 +245,27 @@ impl Growth {
             ("clump", self.clump),
         ];
         if let Some(&(name, value)) = shares.iter().find(|(_, value)| !(0.0..=1.0).contains(value)) {
-            return wrong(name, value.into(), "from 0 to 1");
+            return wrong(name, typed(value), "from 0 to 1");
         }
         let edge = self.length / (self.vertices.max(2) - 1) as f32;
         match *self {
             Self { amount: Amount::Density(density), .. } if !(density > 0.0 && density.is_finite()) => {
                 wrong("density", density, "above 0")
             }
-            Self { length, .. } if !(length > 0.0 && length.is_finite()) => wrong("length", length.into(), "above 0"),
+            Self { length, .. } if !(length > 0.0 && length.is_finite()) => wrong("length", typed(length), "above 0"),
             Self { direction: Direction::Comb(comb), .. } if !comb.is_finite() => wrong("comb", f64::NAN, "finite"),
             Self { vertices, .. } if !(MIN_VERTICES..=MAX_VERTICES).contains(&vertices) => {
                 wrong("vertices", vertices.into(), "from 2 to 256")
             }
             Self { curl_radius, length, .. } if !(0.0..length).contains(&curl_radius) => {
-                wrong("curl radius", curl_radius.into(), "0, or more and below the length")
+                wrong("curl radius", typed(curl_radius), "0, or more and below the length")
             }
             Self { curl_radius, curl_length, .. }
                 if curl_radius > 0.0 && !(curl_length >= EDGES_A_TURN * edge && curl_length.is_finite()) =>
             {
                 wrong(
                     "curl length",
-                    curl_length.into(),
+                    typed(curl_length),
                     "that of four edges at least: ask for longer turns, or for more vertices",
                 )
             }
@@ -289,4 +289,9 @@ impl Growth {
             }
         }
     }
+}
+
+/// A number as it was typed: 0.1, and not what f64 makes of the nearest f32.
+fn typed(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or(value.into())
 }

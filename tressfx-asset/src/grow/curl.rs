@@ -20,13 +20,13 @@ pub(super) fn wander(frizz: f64, points: &mut [DVec3], random: &mut impl Rng) {
     let edge = points[0].distance(points[1]);
     let edges = points.len() - 1;
     let mut aside = DVec3::ZERO;
-    for vertex in 1..=edges {
-        let way = (vertex as f64 - 0.5) / edges as f64;
+    for (before, point) in points[1..].iter_mut().enumerate() {
+        let way = (before as f64 + 0.5) / edges as f64;
         let at = way * (TURNS - 1) as f64;
         let turn = at.floor().min((TURNS - 2) as f64);
         let mixed = 0.5 - 0.5 * (PI * (at - turn)).cos();
         aside += turns[turn as usize].lerp(turns[turn as usize + 1], mixed) * (frizz * way * edge);
-        points[vertex] += aside;
+        *point += aside;
     }
     set_edges(points, edge);
 }
