@@ -140,7 +140,7 @@ fn nothing_shakes_at_any_sub_step_and_stiffness() {
     let hard = VolumeParams { sound_speed: 100.0, friction: 1000.0, ..coarse() };
     let soft_and_hard = [(Solver::Direct, coarse()), (Solver::Direct, hard.clone()), (Solver::TressFx, hard)];
     for (solver, volume) in soft_and_hard {
-        for sub_step in [1.0 / 30.0, 1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0] {
+        for sub_step in [1.0 / 30.0, 1.0 / 60.0, 1.0 / 144.0] {
             let Some(mut rig) = rig(&strands, soft(), solver, &volume) else { return };
             rig.sim.set_clock_params(ClockParams { sub_step, ..ClockParams::default() }).unwrap();
             rig.play(&Motion::still(&strands), 2.0, 30);
