@@ -13,6 +13,8 @@ import package::symmetric::{
     times, trace, whole, with_transpose,
 };
 import package::vector::direction_or;
+@if(volume)
+import package::rod::push_slot;
 @if(contacts)
 import package::rod_contact::contacts_of;
 @if(contacts)
@@ -68,9 +70,13 @@ fn left_of(strand: Strand, vertex: u32) -> Left {
 /// A vertex: where the past says that it would be without forces, and with gravity alone, from where it is.
 struct Pulled { place: vec3<f32>, free: vec3<f32> }
 
-fn pulled(strand: Strand, row: Row, moving: vec3<f32>) -> Pulled {
+fn pulled(strand: Strand, vertex: u32, row: Row, moving: vec3<f32>) -> Pulled {
     let carry = strand.carry.x * row.moved.xyz + strand.carry.y * row.moved_before + strand.carry.z * row.moved_earlier;
-    return Pulled(strand.past * row.moved.xyz - moving, carry - moving + strand.fall);
+    var free = carry - moving + strand.fall;
+    @if(volume) {
+        free += strand.length * strand.length * rods[push_slot(strand.guide, vertex)].xyz;
+    }
+    return Pulled(strand.past * row.moved.xyz - moving, free);
 }
 
 /// The mass of a vertex with what acts on it in proportion to its place, and the force.
@@ -99,7 +105,7 @@ fn eliminate(strand: Strand, begin: Begin) {
     var axis = along(row.now);
     var moving = begin.moving;
     var at = begin.place;
-    var after_edge = pulled(strand, row, moving);
+    var after_edge = pulled(strand, tip, row, moving);
     let last = inertia(strand, tip, 0.5 * row.rest.w, after_edge, at, axis);
     let spring = hold_stiffness(strand);
     let hold = rods[slot(strand, 0u, HOLDING)].xyz;
@@ -128,7 +134,7 @@ fn eliminate(strand: Strand, begin: Begin) {
         let end_at = at;
         moving -= length * row.by;
         at -= length * axis;
-        let before_edge = pulled(strand, next, moving);
+        let before_edge = pulled(strand, vertex - 1u, next, moving);
 
         // The vertex after the edge moves by the one before it and `rotation x arm`.
         let arm = length * axis;

@@ -98,7 +98,7 @@ fn speed_of(second_order: bool, ratio: f32) -> vec2<f32> {
 
 fn strand_of(guide: u32) -> Strand {
     let tip = rod_rest[2u * (step.vertices - 1u) * step.guides + guide];
-    let base = guide / GROUP * step.vertices * SLOTS * GROUP + guide % GROUP;
+    let base = base_of(guide);
     let marks = unpacked_marks(rods[base + BEGIN * GROUP].w);
     let lengths = rods[base + LENGTHS * GROUP].xy;
     let ratios = select(step.length / lengths, vec2(1.0), lengths == vec2(0.0));
@@ -133,6 +133,22 @@ fn strand_of(guide: u32) -> Strand {
 
 fn slot(strand: Strand, vertex: u32, slot: u32) -> u32 {
     return strand.base + (vertex * SLOTS + slot) * GROUP;
+}
+
+/// Where the slots of a guide are.
+fn base_of(guide: u32) -> u32 {
+    return guide / GROUP * step.vertices * SLOTS * GROUP + guide % GROUP;
+}
+
+/// The same as `slot` where nothing else of the strand is asked for.
+fn slot_of(guide: u32, vertex: u32, slot: u32) -> u32 {
+    return base_of(guide) + (vertex * SLOTS + slot) * GROUP;
+}
+
+/// The acceleration by the hair around a vertex; behind all slots, and only where hair meets hair.
+fn push_slot(guide: u32, vertex: u32) -> u32 {
+    let groups = (step.guides + GROUP - 1u) / GROUP;
+    return groups * GROUP * step.vertices * SLOTS + vertex * step.guides + guide;
 }
 
 /// What a vertex moved by so many sub-steps ago; 0 is this one.

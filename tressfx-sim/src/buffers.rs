@@ -48,7 +48,8 @@ pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
     /// Sixteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
-    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 16 + slot) * GROUP + guide % GROUP`.
+    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 16 + slot) * GROUP + guide % GROUP`. Where hair meets hair, a `vec4<f32>` a
+    /// vertex follows, vertex-major: the acceleration by the hair around it.
     pub(crate) state: BufferId,
 }
 
@@ -96,7 +97,8 @@ impl RootTransform {
 }
 
 impl SectionBuffers {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &SectionDesc, center: Vec3) -> Result<Self> {
+    /// `has_volume` where hair meets hair.
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &SectionDesc, center: Vec3, has_volume: bool) -> Result<Self> {
         let (strands, own_roots) = (desc.strands, desc.own_roots);
         let shape = StrandShape::of(strands);
         let vertices = strands.vertices as usize;
@@ -112,7 +114,7 @@ impl SectionBuffers {
             },
             rods: match desc.solver {
                 Solver::TressFx => None,
-                Solver::Direct => Some(RodBuffers::new(backend, shape)?),
+                Solver::Direct => Some(RodBuffers::new(backend, shape, has_volume)?),
             },
             roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
             steps: UniformArray::new(backend, "hair.steps", STEPS)?,
@@ -145,15 +147,16 @@ impl RodBuffers {
     /// Of a vertex, in the buffer of the state.
     const SLOTS: u64 = 16;
 
-    fn new(backend: &mut dyn Backend, shape: StrandShape) -> Result<Self> {
-        let state = BufferDesc::storage("hair.rods", Self::state_bytes(shape.guides, shape.vertices));
+    fn new(backend: &mut dyn Backend, shape: StrandShape, has_volume: bool) -> Result<Self> {
+        let pushes = if has_volume { 16 * u64::from(shape.guide_vertices()) } else { 0 };
+        let state = BufferDesc::storage("hair.rods", Self::state_bytes(shape.guides, shape.vertices) + pushes);
         Ok(Self {
             rest: storage(backend, "hair.rod_rest", 16 * 2, shape.guide_vertices())?,
             state: backend.create_buffer(&state)?,
         })
     }
 
-    /// Of the buffer of the state: groups of threads are whole.
+    /// Of the state without pushes: groups of threads are whole.
     pub(crate) fn state_bytes(guides: u32, vertices: u32) -> u64 {
         16 * Self::SLOTS * u64::from(guides.next_multiple_of(GROUP)) * u64::from(vertices)
     }

@@ -50,6 +50,9 @@ pub enum SimError {
         /// How many there may be.
         most: usize,
     },
+    /// The simulation was made without hair against hair.
+    #[error("volume: the simulation was made without it")]
+    NoVolume,
     /// There is no such section.
     #[error("section {index} of {count}")]
     NoSection {

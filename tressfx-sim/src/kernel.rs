@@ -21,6 +21,9 @@ pub(crate) mod surface_scan;
 pub(crate) mod tangents;
 pub(crate) mod tressfx;
 pub(crate) mod triangle_roots;
+pub(crate) mod volume_nodes;
+pub(crate) mod volume_push;
+pub(crate) mod volume_splat;
 
 use std::sync::Arc;
 
@@ -31,6 +34,7 @@ use tressfx_core::shader::{Binding, Bindings, Kernel, Module, Shader, ShaderSour
 
 use crate::buffers::{STEPS, SectionBuffers};
 use crate::section::Shared;
+use crate::volume::Volume;
 
 /// Threads of a group; `package::grid::GROUP` in WGSL.
 pub(crate) const GROUP: u32 = 64;
@@ -59,6 +63,8 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("surface", include_str!("../shaders/surface.wgsl")),
     ("symmetric", include_str!("../shaders/symmetric.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
+    ("volume", include_str!("../shaders/volume.wgsl")),
+    ("volume_vertex", include_str!("../shaders/volume_vertex.wgsl")),
     ("wind", include_str!("../shaders/wind.wgsl")),
 ];
 
@@ -152,6 +158,31 @@ impl PassMaker<'_> {
         let specialization = specialization.feature("roots", roots.is_some());
         let resources: Vec<_> = resources.iter().copied().chain(roots).collect();
         self.pass(source, &specialization, &resources, grid)
+    }
+
+    /// A pass over the vertices of the guides as the grid of a volume sees them, which pushes them or only looks.
+    fn pass_of_volume(
+        &mut self,
+        source: &ShaderSource,
+        volume: &Volume,
+        pushes: bool,
+        resources: &[(&str, Binding)],
+    ) -> Result<Pass> {
+        let buffers = self.buffers;
+        let specialization = Specialization::new().feature("push", pushes).feature("rods", buffers.rods.is_some());
+        let common = [("volume", volume.buffers.volume.into()), ("positions", buffers.strands.positions.into())];
+        let resources = [&common[..], resources].concat();
+        let grid = Grid::for_threads(buffers.strands.shape.guide_vertices(), GROUP);
+        match buffers.rods {
+            // They keep what they have moved by in the world, whatever their roots do.
+            Some(rods) => {
+                self.pass(source, &specialization, &[&resources[..], &[("rods", rods.state.into())]].concat(), grid)
+            }
+            None => {
+                let resources = [&resources[..], &[("previous", buffers.previous.into())]].concat();
+                self.pass_with_roots(source, specialization, &resources, grid)
+            }
+        }
     }
 
     /// A thread a guide.

@@ -34,6 +34,7 @@ mod sleep;
 mod solver;
 mod stage;
 pub mod step;
+mod volume;
 mod wind;
 
 pub use buffers::RootTransform;
@@ -50,4 +51,5 @@ pub use sim::{HairSim, StepReport};
 pub use sleep::{MotionTicket, SleepParams};
 pub use solver::Solver;
 pub use stage::Stage;
+pub use volume::{VolumeGrid, VolumeParams};
 pub use wind::Wind;

@@ -25,6 +25,10 @@ mod tangents;
 mod tressfx;
 mod triangle_roots;
 mod vector;
+mod volume;
+mod volume_nodes;
+mod volume_push;
+mod volume_splat;
 mod wind;
 
 use glam::{DVec3, Vec4};
@@ -51,6 +55,10 @@ pub use surface_scan::surface_scan;
 pub use tangents::{follow_strand, tangents};
 pub use tressfx::tressfx;
 pub use triangle_roots::triangle_roots;
+pub use volume::{Moving, VolumeForces, rest_masses, vertex_masses, volume, volume_vertex};
+pub use volume_nodes::{VolumeNode, volume_nodes};
+pub use volume_push::volume_push;
+pub use volume_splat::{VolumeSums, volume_splat};
 
 /// One guide; a slice of each array of its section.
 #[derive(Debug)]

@@ -12,12 +12,15 @@ use crate::kernel::moved::moved;
 use crate::kernel::roots::roots;
 use crate::kernel::tangents::tangents;
 use crate::kernel::tressfx::tressfx;
+use crate::kernel::volume_push::volume_push;
+use crate::kernel::volume_splat::volume_splat;
 use crate::kernel::{Kernels, Pass, PassMaker};
 use crate::params::SimParams;
 use crate::section_desc::SectionDesc;
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::SectionInfo;
+use crate::volume::Volume;
 
 /// What all sections share.
 #[derive(Debug)]
@@ -28,6 +31,8 @@ pub(crate) struct Shared {
     pub(crate) non_finite: BufferId,
     /// All signed distance fields, if there may be any among the colliders.
     pub(crate) fields: Option<BufferId>,
+    /// Where hair meets hair.
+    pub(crate) volume: Option<Volume>,
 }
 
 #[derive(Debug)]
@@ -45,6 +50,8 @@ struct Passes {
     roots: Option<Pass>,
     tressfx: Option<Pass>,
     direct: Option<Pass>,
+    volume_splat: Option<Pass>,
+    volume_push: Option<Pass>,
     tangents: Pass,
 }
 
@@ -56,7 +63,7 @@ impl SimSection {
         center: Vec3,
         shared: &Shared,
     ) -> Result<Self> {
-        let buffers = SectionBuffers::new(backend, desc, center)?;
+        let buffers = SectionBuffers::new(backend, desc, center, shared.volume.is_some())?;
         let passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &buffers, shared }, &desc.params)?;
         let info = SectionInfo::new(desc.strands, desc.solver);
         Ok(Self { buffers, info, solver: desc.solver, params: desc.params.clone(), passes })
@@ -106,6 +113,10 @@ impl SimSection {
             Stage::Roots => passes.roots.as_ref(),
             Stage::TressFx => passes.tressfx.as_ref(),
             Stage::Direct => passes.direct.as_ref(),
+            Stage::VolumeSplat => passes.volume_splat.as_ref(),
+            Stage::VolumePush => passes.volume_push.as_ref(),
+            // It is of all sections.
+            Stage::VolumeNodes => None,
             Stage::Tangents => Some(&passes.tangents),
         };
         pass.iter().for_each(|pass| pass.record(list, step));
@@ -124,6 +135,8 @@ impl Passes {
             roots: roots(maker)?,
             tressfx: tressfx(maker, params)?,
             direct: direct(maker, params)?,
+            volume_splat: volume_splat(maker)?,
+            volume_push: volume_push(maker)?,
             tangents: tangents(maker)?,
         })
     }

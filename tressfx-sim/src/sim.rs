@@ -23,6 +23,7 @@ use crate::sleep::{Measure, MotionTicket, Sleep, SleepParams};
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::Step;
+use crate::volume::{Volume, VolumeParams};
 
 /// What a frame did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,10 +49,10 @@ pub struct StepReport {
 /// bits. [`HairSim::pose`] takes them into the world.
 #[derive(Debug)]
 pub struct HairSim {
-    sections: Vec<SimSection>,
+    pub(crate) sections: Vec<SimSection>,
     strand_buffers: Vec<StrandBuffers>,
     kernels: Kernels,
-    shared: Shared,
+    pub(crate) shared: Shared,
     clock: Clock,
     resets: u64,
     /// The colliders of the frame that is being recorded; kept for its memory.
@@ -79,7 +80,7 @@ impl HairSim {
         sections: &[SectionDesc],
         max_colliders: usize,
     ) -> Result<Self, SimError> {
-        Self::made(backend, list, sections, max_colliders, None)
+        Self::made(backend, list, sections, max_colliders, None, None)
     }
 
     /// The same for colliders of which some may be signed distance fields ([`Fields::shape`]). The fields have to outlive the simulation, and are made before each
@@ -94,21 +95,23 @@ impl HairSim {
         max_colliders: usize,
         fields: &Fields,
     ) -> Result<Self, SimError> {
-        Self::made(backend, list, sections, max_colliders, Some(fields))
+        Self::made(backend, list, sections, max_colliders, Some(fields), None)
     }
 
-    fn made(
+    pub(crate) fn made(
         backend: &mut dyn Backend,
         list: &mut PassList,
         sections: &[SectionDesc],
         max_colliders: usize,
         fields: Option<&Fields>,
+        volume: Option<&VolumeParams>,
     ) -> Result<Self, SimError> {
         sections.iter().try_for_each(|section| section.params.validate())?;
         let bounds =
             sections.iter().map(|section| section.strands.guide_bounds()).reduce(Bounds::union).unwrap_or_default();
         let clock = Clock::new(ClockParams::default(), bounds)?;
         let ((shared, kernels, made), owner) = Owner::build(backend, |backend| {
+            let mut kernels = Kernels::default();
             let shared = Shared {
                 colliders: match max_colliders {
                     0 => None,
@@ -116,14 +119,18 @@ impl HairSim {
                 },
                 non_finite: storage(backend, "hair.non_finite", 4, 1)?,
                 fields: fields.filter(|fields| max_colliders > 0 && !fields.is_empty()).map(Fields::buffer),
+                volume: match volume {
+                    None => None,
+                    Some(params) => Some(Volume::new(backend, &mut kernels, sections, clock.center(), params)?),
+                },
             };
-            let mut kernels = Kernels::default();
             let mut made = Vec::with_capacity(sections.len());
             for desc in sections {
                 made.push(SimSection::new(backend, &mut kernels, desc, clock.center(), &shared)?);
             }
             Ok::<_, tressfx_core::Error>((shared, kernels, made))
         })?;
+        shared.volume.iter().for_each(|volume| volume.upload(list, sections, clock.center()));
         let mut standing = Vec::with_capacity(sections.len());
         for (section, desc) in made.iter().zip(sections) {
             section.buffers.upload(list, desc.strands);
@@ -426,7 +433,7 @@ impl HairSim {
     /// Records one kernel of all sections, or nothing where a section has none. [`HairSim::step`] does this; tests and
     /// measurements of single kernels do it themselves.
     pub fn record_stage(&self, list: &mut PassList, stage: Stage) {
-        self.sections.iter().for_each(|section| section.record(list, stage, ALONE));
+        self.record_stage_at(list, stage, ALONE);
     }
 
     /// Frees everything.
@@ -449,6 +456,7 @@ impl HairSim {
         for section in &self.sections {
             section.solver().stages().iter().for_each(|&stage| section.record(list, stage, ALONE));
         }
+        self.record_volume(list, ALONE);
     }
 
     fn record_sub_steps(&mut self, list: &mut PassList, sub_steps: &[SubStep], input: &StepInput) {
@@ -482,5 +490,6 @@ impl HairSim {
                 stages(section).get(index).iter().for_each(|&&stage| section.record(list, stage, place));
             }
         }
+        self.record_volume(list, place);
     }
 }

@@ -12,6 +12,12 @@ pub enum Stage {
     TressFx,
     /// All of a sub-step of rods; or the reset to the rest pose.
     Direct,
+    /// Mass and momentum of the strands at the nodes of a grid; this and the next two where hair meets hair.
+    VolumeSplat,
+    /// Pressure and mean velocity at the nodes.
+    VolumeNodes,
+    /// What these change of the velocities of the strands.
+    VolumePush,
     /// Follow strands are placed, and all strands get their tangents; once a frame.
     Tangents,
 }
@@ -23,6 +29,9 @@ impl Stage {
             Self::Roots => "hair.sim.roots",
             Self::TressFx => "hair.sim.tressfx",
             Self::Direct => "hair.sim.direct",
+            Self::VolumeSplat => "hair.sim.volume_splat",
+            Self::VolumeNodes => "hair.sim.volume_nodes",
+            Self::VolumePush => "hair.sim.volume_push",
             Self::Tangents => "hair.sim.tangents",
         }
     }

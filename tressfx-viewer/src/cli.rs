@@ -112,6 +112,9 @@ pub(crate) struct Scene {
     /// Parameters of simulation and look
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) params: Option<PathBuf>,
+    /// Hair keeps its volume and rubs against hair: as the table `volume` of the parameters says, which asks for it too, or by default
+    #[arg(long)]
+    pub(crate) volume: bool,
     /// The material of the hair, for the solver `direct`; it replaces what the parameters say
     #[arg(long, value_name = "NAME", value_parser = presets())]
     pub(crate) preset: Option<Preset>,

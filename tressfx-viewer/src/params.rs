@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use tressfx_core::shape::Capsule;
 use tressfx_render::{Lights, Material};
-use tressfx_sim::{ClockParams, InterpolationParams, SimParams, Wind};
+use tressfx_sim::{ClockParams, InterpolationParams, SimParams, VolumeParams, Wind};
 
 use crate::light_params::{self, LightParams, SkyParams};
 
@@ -24,6 +24,8 @@ pub(crate) struct Params {
     pub(crate) interpolation: InterpolationParams,
     /// The wind; `--wind` overrides its velocity.
     pub(crate) wind: Option<Wind>,
+    /// Hair against hair; none where it is left out.
+    pub(crate) volume: Option<VolumeParams>,
     /// What hair collides with, beside what a built-in groom brings: in the space and the unit of the groom.
     pub(crate) capsule: Vec<Capsule>,
     /// The light from everywhere; with `light` in the place of that of the studio.
@@ -62,6 +64,9 @@ impl Params {
         }
         if let Some(wind) = &params.wind {
             wind.validate()?;
+        }
+        if let Some(volume) = &params.volume {
+            volume.validate()?;
         }
         params.lights()?;
         for section in 0..sections {
@@ -117,6 +122,7 @@ mod tests {
         assert!(message("[sim]\ndampling = 0.5").contains("dampling"));
         assert!(message("[sim]\ndamping = 5.0").contains("damping = 5 must be from 0 to 1"));
         assert!(message("[material]\nopacity = 2.0").contains("opacity is 2"));
+        assert!(message("[volume]\ncells = 1000").contains("volume.cells = 1000 must be from 4 to 128"));
         assert!(message("[clock]\nsub_step = 0.0").contains("sub_step"));
         assert!(
             message("[[capsule]]\na = [0, 0, 0]\nb = [0, 1, 0]\nradius_a = -1\nradius_b = 1").contains("capsule 0")

@@ -12,7 +12,7 @@ use tressfx_core::view::Pose;
 use tressfx_sim::bending_length::of_local_stiffness;
 use tressfx_sim::field::Fields;
 use tressfx_sim::metrics::{self, EdgeError};
-use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
+use tressfx_sim::{ClockParams, Collider, HairSim, SectionDesc, SimParams, Solver, StepInput, VolumeParams, Wind};
 
 use crate::backend;
 use crate::body::Body;
@@ -127,14 +127,17 @@ impl Run {
         let mut uploads = PassList::new();
         let mut body = Body::read(&args.body, &mut *backend, &mut uploads)?;
         let fields = args.collision.fields(&mut *backend, &mut uploads, &meshes, body.as_ref())?;
-        let mut sim = match &fields {
-            None => HairSim::new(&mut *backend, &mut uploads, &sections, colliders.len())?,
-            Some(fields) => {
-                for index in 0..fields.len() {
-                    colliders.push(Collider::with_head(fields.shape(index)?));
-                }
-                HairSim::with_fields(&mut *backend, &mut uploads, &sections, colliders.len(), fields)?
+        if let Some(fields) = &fields {
+            for index in 0..fields.len() {
+                colliders.push(Collider::with_head(fields.shape(index)?));
             }
+        }
+        let volume = params.volume.clone().or_else(|| args.volume.then(VolumeParams::default));
+        let (most, gpu) = (colliders.len(), &mut *backend);
+        let mut sim = match (&volume, &fields) {
+            (Some(volume), _) => HairSim::with_volume(gpu, &mut uploads, &sections, most, fields.as_ref(), volume)?,
+            (None, None) => HairSim::new(gpu, &mut uploads, &sections, most)?,
+            (None, Some(fields)) => HairSim::with_fields(gpu, &mut uploads, &sections, most, fields)?,
         };
         if let Some(body) = &mut body {
             body.bind(&args.body, &mut *backend, &mut uploads, &sim, &groom.sections)?;

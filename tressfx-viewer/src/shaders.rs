@@ -127,16 +127,17 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
+    let volume = params.volume.clone();
     // What strands want at rest takes time and changes no kernel.
     let params = SimParams { sag_free: 0.0, ..params.sim(0).clone() };
     let section = SectionDesc::new(&groom.sections[0], params).with_solver(args.solver.solver());
     let sections = [section.clone(), section.with_own_roots()];
     let mut list = PassList::new();
-    let mut sim = if args.fields {
-        let fields = fields(&mut backend, &mut list)?;
-        HairSim::with_fields(&mut backend, &mut list, &sections, 1, &fields)?
-    } else {
-        HairSim::new(&mut backend, &mut list, &sections, 1)?
+    let fields = if args.fields { Some(fields(&mut backend, &mut list)?) } else { None };
+    let mut sim = match (&volume, &fields) {
+        (Some(volume), _) => HairSim::with_volume(&mut backend, &mut list, &sections, 1, fields.as_ref(), volume)?,
+        (None, None) => HairSim::new(&mut backend, &mut list, &sections, 1)?,
+        (None, Some(fields)) => HairSim::with_fields(&mut backend, &mut list, &sections, 1, fields)?,
     };
     sim.allow_sleep(&mut backend, SleepParams::default())?;
     body(&mut backend, &sim, &groom.sections[0])?;

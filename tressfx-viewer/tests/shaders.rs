@@ -13,11 +13,11 @@ use crate::compilers::{Compiler, installed};
 
 const LANGUAGES: &str = "wgsl,spirv,hlsl,msl,glsl,essl";
 
-/// Without the shapes and without iterations.
-const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n";
+/// Without the shapes and without iterations, with hair against hair.
+const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength_iterations = 0\n[volume]\n";
 
-/// Rods with all that they may have.
-const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n";
+/// Rods with all that they may have, hair against hair too.
+const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volume]\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
 const VARIANTS: [&[&str]; 18] = [
@@ -110,10 +110,13 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "pinned_tips",
         "places",
         "pull",
+        "push",
+        "rods",
         "roots",
         "shaded",
         "shadows",
         "unshaded",
+        "volume",
     ];
     // It is always written for capsules.
     let all = names.into_iter().flat_map(both).chain(["capsules true", "contacts true"].map(String::from));

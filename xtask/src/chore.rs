@@ -9,7 +9,7 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 34] = [
+const PICTURES: [(&str, &str); 36] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
@@ -32,6 +32,8 @@ const PICTURES: [(&str, &str); 34] = [
     ("lod-5.png", "builtin:long --frames 0 --size 30x30 --camera 0,-0.17,19.2,0,-0.17,0,1.706 --lod"),
     ("between.png", "builtin:long:400:16 --frames 20 --motion shake --interpolate 16000 --size 500x400"),
     ("between-all.png", "builtin:long:16000:16 --frames 20 --motion shake --size 500x400"),
+    ("volume-none.png", "builtin:curly:700 --params docs/soft.toml --frames 50 --size 320x320"),
+    ("volume.png", "builtin:curly:700 --params docs/soft.toml --frames 50 --size 320x320 --volume"),
     ("preset-baby.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset baby"),
     ("preset-medium.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset medium"),
     ("preset-sprayed.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset sprayed"),

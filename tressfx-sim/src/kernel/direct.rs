@@ -23,7 +23,8 @@ pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option
         .feature("fields", fields.is_some())
         .feature("internal_damping", params.internal_damping > 0.0)
         .feature("pull", params.pull_frequency > 0.0)
-        .feature("pinned_tips", buffers.pinned_tips);
+        .feature("pinned_tips", buffers.pinned_tips)
+        .feature("volume", maker.shared.volume.is_some());
     let mut resources = vec![
         ("rest", buffers.rest.into()),
         ("rod_rest", rods.rest.into()),

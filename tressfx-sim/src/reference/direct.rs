@@ -140,6 +140,8 @@ pub struct Rod {
     pub touches: Vec<Touch>,
     /// The force that holds the tip, if it is held, times the square of the sub-step.
     pub holding: DVec3,
+    /// By what the hair around it accelerates each vertex, on the axes of the world.
+    pub pushes: Vec<DVec3>,
     /// Whether the past counts: not after a reset, after a change of the sub-step, or after an edge turned too fast.
     pub has_past: bool,
 }
@@ -158,6 +160,7 @@ impl Rod {
             last_strains: vec![DVec3::ZERO; frames.len()],
             touches: vec![Touch::default(); frames.len()],
             holding: DVec3::ZERO,
+            pushes: zeros.clone(),
             has_past: false,
             frames,
         };
@@ -202,6 +205,8 @@ struct Motion<'a> {
     before: Vec<DVec3>,
     /// The strain that the past says, for the rate of bending.
     past_strains: Vec<DVec3>,
+    /// Accelerations by gravity and by the hair around.
+    accelerations: Vec<DVec3>,
     /// The direction of the hair at each vertex, which the drag asks for.
     along: Vec<DVec3>,
 }
@@ -230,6 +235,7 @@ impl<'a> Motion<'a> {
             past: (0..rod.positions.len()).map(past).collect(),
             before: rod.positions.iter().map(|place| *place - step.root_displacement).collect(),
             past_strains: (0..rod.frames.len()).map(past_strain).collect(),
+            accelerations: rod.pushes.iter().map(|push| step.gravity + push).collect(),
             along: vec![DVec3::ZERO; rod.positions.len()],
         }
     }
@@ -237,7 +243,7 @@ impl<'a> Motion<'a> {
     /// Where a vertex would be with its velocity and gravity alone.
     fn free(&self, vertex: usize) -> DVec3 {
         let Past { place, velocity } = self.past[vertex];
-        place + self.length * (velocity + self.length * self.step.gravity)
+        place + self.length * (velocity + self.length * self.accelerations[vertex])
     }
 
     /// The mass of a vertex with what acts on it in proportion to its place, times the square of the sub-step; and the force

@@ -7,6 +7,7 @@ use tressfx_core::view::Pose;
 
 use super::direct::{Rod, RodRest, direct_guide};
 use super::field::{Field, PlacedField};
+use super::volume::{GroomVolume, Moving, to_world, volume_vertex};
 use super::{Guide, GuideRoot, RootPlace, follow_strand, roots, tressfx};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
@@ -19,6 +20,7 @@ use crate::section_desc::SectionDesc;
 use crate::sim::StepReport;
 use crate::solver::Solver;
 use crate::step::{SectionInfo, Step};
+use crate::volume::VolumeParams;
 
 /// What [`HairSim`](crate::HairSim) does, in f64 on the CPU.
 #[derive(Debug)]
@@ -26,6 +28,7 @@ pub struct Simulation<'a> {
     sections: Vec<Section<'a>>,
     clock: Clock,
     fields: Vec<Field>,
+    volume: Option<GroomVolume>,
     non_finite: u64,
 }
 
@@ -61,6 +64,7 @@ impl<'a> Simulation<'a> {
             sections: sections.iter().map(|section| Section::new(section, center)).collect(),
             clock,
             fields: Vec::new(),
+            volume: None,
             non_finite: 0,
         })
     }
@@ -69,6 +73,17 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub fn with_fields(self, fields: Vec<Field>) -> Self {
         Self { fields, ..self }
+    }
+
+    /// The same with hair against hair.
+    ///
+    /// # Errors
+    /// A parameter outside its range.
+    pub fn with_volume(self, params: &VolumeParams) -> Result<Self, SimError> {
+        params.validate()?;
+        let strands: Vec<_> = self.sections.iter().map(|section| section.strands).collect();
+        let volume = GroomVolume::new(&strands, self.clock.center(), params);
+        Ok(Self { volume: Some(volume), ..self })
     }
 
     /// Changes how time is cut.
@@ -86,28 +101,26 @@ impl<'a> Simulation<'a> {
     pub fn step(&mut self, input: &StepInput) -> Result<StepReport, SimError> {
         input.validate()?;
         let plan = self.clock.advance_along(input.dt, input.path, input.head);
-        let center = self.clock.center();
-        for (index, section) in self.sections.iter_mut().enumerate() {
-            if let Some(rotation) = plan.reset {
+        if let Some(rotation) = plan.reset {
+            for section in &mut self.sections {
                 section.step = Step::reset(&section.params, &section.info, rotation);
                 section.move_roots();
-                match section.info.solver {
-                    Solver::TressFx => _ = section.positions_step(&[], &[]),
-                    Solver::Direct => _ = section.rods_step(&[], &[]),
-                }
+                section.solve(&[], &[]);
             }
-            for sub_step in &plan.sub_steps {
+            self.volume_step();
+        }
+        let center = self.clock.center();
+        for sub_step in &plan.sub_steps {
+            for (index, section) in self.sections.iter_mut().enumerate() {
                 section.step = Step::new(&section.params, &section.info, sub_step, input.wind.as_ref());
                 let hit = input.colliders.iter().filter(|collider| !collider.except.contains(&index));
                 let shapes: Vec<_> = hit.map(|collider| collider.at(center, sub_step)).collect();
                 let capsules: Vec<_> = shapes.iter().filter_map(capsule).collect();
                 let fields: Vec<_> = shapes.iter().filter_map(|shape| placed_field(&self.fields, shape)).collect();
                 section.move_roots();
-                self.non_finite += match section.info.solver {
-                    Solver::TressFx => section.positions_step(&capsules, &fields),
-                    Solver::Direct => section.rods_step(&capsules, &fields),
-                };
+                self.non_finite += section.solve(&capsules, &fields);
             }
+            self.volume_step();
         }
         Ok(StepReport {
             sub_steps: plan.sub_steps.len() as u32,
@@ -116,6 +129,17 @@ impl<'a> Simulation<'a> {
             dropped: plan.dropped,
             asleep: false,
         })
+    }
+
+    /// The end of a sub-step, where hair meets hair.
+    fn volume_step(&mut self) {
+        let Some(volume) = &self.volume else { return };
+        let each = self.sections.iter().zip(&volume.masses);
+        let vertices: Vec<_> = each.flat_map(|(section, masses)| section.moving(masses)).collect();
+        let length = self.sections.first().map_or(0.0, |section| f64::from(section.step.length));
+        let pushes = volume.pushes(length, &vertices);
+        let mut pushes = pushes.iter();
+        self.sections.iter_mut().for_each(|section| section.push(&mut pushes));
     }
 
     /// What [`HairSim::set_roots`](crate::HairSim::set_roots) does.
@@ -194,6 +218,42 @@ impl<'a> Section<'a> {
     fn move_roots(&mut self) {
         for (target, reached, root) in &mut self.roots {
             roots(&self.step, target, reached, root);
+        }
+    }
+
+    /// A sub-step or a reset; says how many strands had become non-finite.
+    fn solve(&mut self, capsules: &[(Capsule, CapsuleMotion)], fields: &[PlacedField]) -> u64 {
+        match self.info.solver {
+            Solver::TressFx => self.positions_step(capsules, fields),
+            Solver::Direct => self.rods_step(capsules, fields),
+        }
+    }
+
+    /// The guides as the grid of hair against hair sees them.
+    fn moving(&self, masses: &[f64]) -> Vec<Moving> {
+        let vertices = self.strands.vertices as usize;
+        let vertex = |(index, &mass): (usize, &f64)| {
+            let here = self.positions[index];
+            let displacement = match self.rods.get(index / vertices) {
+                Some((_, rod)) => rod.displacements[index % vertices],
+                None => here - self.previous[index],
+            };
+            let own_root = self.roots.get(index / vertices).map(|(.., root)| root);
+            let (place, velocity) = volume_vertex(&self.step, self.info.solver, own_root, here, displacement);
+            Moving { place, velocity, mass }
+        };
+        masses.iter().enumerate().map(vertex).collect()
+    }
+
+    /// Takes what changes the velocities of its vertices, displacements in the space of the head.
+    fn push<'p>(&mut self, pushes: &mut impl Iterator<Item = &'p DVec3>) {
+        let (vertices, length) = (self.strands.vertices as usize, f64::from(self.step.length));
+        for (index, push) in pushes.take(self.positions.len()).enumerate() {
+            let push = if self.rest[index].w == 0.0 { DVec3::ZERO } else { to_world(&self.step, *push) };
+            match self.rods.get_mut(index / vertices) {
+                Some((_, rod)) => rod.pushes[index % vertices] = push / (length * length),
+                None => self.previous[index] -= push,
+            }
         }
     }
 
