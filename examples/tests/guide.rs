@@ -183,6 +183,7 @@ fn body(backend: &mut NullBackend, list: &mut PassList, sim: &mut HairSim, groom
     let mut mesh = groom.mesh().skinned("head").unwrap();
     let offset = MorphOffset { vertex: 0, position: glam::Vec3::Y, normal: glam::Vec3::ZERO };
     mesh.morphs = vec![Morph { name: "swell".into(), offsets: vec![offset] }];
+    mesh.tangents = vec![glam::Vec4::X; mesh.positions.len()];
     let mut skinning = Skinning::new(backend, list, &mesh, true).unwrap();
     skinning.pose(list, &mesh.bind_pose()).unwrap();
     let binding = Binding::of_guides(strands, &mesh, 1.0).unwrap();

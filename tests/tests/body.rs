@@ -43,6 +43,7 @@ fn patch() -> SkinnedMesh {
             mesh.positions.push(on_patch(u, v));
             let along = [on_patch(u + 1e-3, v) - on_patch(u, v), on_patch(u, v + 1e-3) - on_patch(u, v)];
             mesh.normals.push(along[1].cross(along[0]).normalize());
+            mesh.tangents.push(along[0].normalize().extend(if column % 2 == 0 { 1.0 } else { -1.0 }));
             let pairs =
                 [(0, (1.0 - 2.0 * u).max(0.0)), (1, 1.0 - (2.0 * u - 1.0).abs()), (2, (2.0 * u - 1.0).max(0.0))];
             mesh.influences.push(Influences::strongest(&pairs).unwrap());
@@ -191,6 +192,13 @@ fn a_twisted_stretched_and_morphed_patch_is_skinned_as_in_f64() {
         }
         println!("{share}: {:.1e} of size, normals {:.1e}", errors[0] / SIZE, errors[1]);
         assert!(errors[0] < 1e-6 * SIZE && errors[1] < 1e-5, "{errors:?}");
+        let tangents: Vec<[f32; 4]> = rig.read(rig.skinning.tangents().unwrap(), count);
+        let expected = reference::skin_tangents(&mesh, &pose(share));
+        for (((now, expected), bound), normal) in tangents.iter().zip(&expected).zip(&mesh.tangents).zip(&now) {
+            let along = Vec3::from_slice(&now[..3]).as_dvec3();
+            let across = along.dot(Vec3::from_slice(&normal[1][..3]).as_dvec3());
+            assert!(along.distance(*expected) < 1e-5 && across.abs() < 1e-6 && now[3] == bound.w, "{share}: {now:?}");
+        }
         // The frame before; of the first one itself.
         let past = rig.vertices(rig.skinning.past_vertices().unwrap(), count);
         assert!(past == *last.as_ref().unwrap_or(&now), "{share}");
@@ -437,11 +445,11 @@ fn what_a_body_does_not_have_costs_nothing() {
     };
     let mesh = patch();
     let vertices = mesh.positions.len() as u64;
-    let still = SkinnedMesh { morphs: Vec::new(), ..mesh.clone() };
+    let still = SkinnedMesh { morphs: Vec::new(), tangents: Vec::new(), ..mesh.clone() };
     assert_eq!(bytes(&still, false), (80 * vertices + 48 * 3, 0));
     assert_eq!(bytes(&still, true), (112 * vertices + 48 * 3, 2));
     let offsets: u64 = mesh.morphs.iter().map(|morph| morph.offsets.len() as u64).sum();
-    assert_eq!(bytes(&mesh, false).0, 80 * vertices + 48 * 3 + 4 * (vertices + 1) + 32 * offsets + 16);
+    assert_eq!(bytes(&mesh, false).0, (80 + 32) * vertices + 48 * 3 + 4 * (vertices + 1) + 32 * offsets + 16);
     // A groom without a body has no pass of one and no bytes.
     let strands = strands_of(random_asset(20, 8, 3), 0);
     let (mut backend, mut list) = (NullBackend::default(), PassList::new());

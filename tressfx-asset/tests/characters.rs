@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use assets::folder;
 use bodies::{SMALL_MESH, small_bones, small_gltf, small_skin};
-use glam::{Affine3A, DVec3, Quat, Vec3};
+use glam::{Affine3A, DVec3, Quat, Vec3, Vec4};
 use tressfx_asset::character::{Character, read_bytes};
 use tressfx_asset::pc2::PointCache;
 use tressfx_asset::{FileError, FileKind, bones, pc2, tfxmesh, tfxskin};
@@ -147,6 +147,11 @@ fn ratboy_has_bones_for_every_strand_and_a_skinned_body() {
 #[test]
 fn curves_of_each_kind_are_sampled_as_the_format_says() {
     let character = text(&small_gltf()).unwrap();
+    let half = 0.5f32.sqrt();
+    assert!(character.mesh.tangents[0].abs_diff_eq(Vec4::new(half, half, 0.0, 1.0), 1e-6), "of length 1");
+    assert_eq!(character.mesh.tangents[1..], [Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 1.0, 0.0, 1.0)]);
+    let untold = text(&small_gltf().replace(r#","TANGENT":1"#, "")).unwrap();
+    assert!(untold.mesh.tangents.is_empty());
     let all = character.animation("all").unwrap();
     assert_eq!(all.seconds, 1.0);
     // The skeleton is a hundred times the mesh: hair is bound to what is shown.

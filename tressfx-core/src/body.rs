@@ -3,7 +3,7 @@
 //! A vertex is `p + sum(m_i * morph_i)`, then the sum of what the matrices of its joints make of that, each by its weight: linear blend skinning, as
 //! glTF 2.0 has it. With the identity for every joint a mesh is in its bind pose, in which hair is bound to it.
 
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3, Vec4};
 use thiserror::Error;
 
 /// The joints that move a vertex or a strand, and by what share. Weights sum to 1; a joint without weight is 0.
@@ -80,6 +80,9 @@ pub struct SkinnedMesh {
     pub morphs: Vec<Morph>,
     /// Texture coordinates, one a vertex, or none at all. (0, 0) is the upper left corner of a picture, (1, 1) the lower right one.
     pub uvs: Vec<Vec2>,
+    /// Unit tangents, one a vertex, or none at all: the direction in which the first texture coordinate grows, and in the fourth number 1 or -1, by which the cross product of normal and
+    /// tangent is the bitangent, as glTF has it.
+    pub tangents: Vec<Vec4>,
 }
 
 /// A pose of a [`SkinnedMesh`].
@@ -166,9 +169,10 @@ impl SkinnedMesh {
                 return Err(BodyError::Count { mesh: mesh(), what, found, expected: vertices });
             }
         }
-        if !(self.uvs.is_empty() || self.uvs.len() == vertices) {
-            let (what, found) = ("texture coordinates", self.uvs.len());
-            return Err(BodyError::Count { mesh: mesh(), what, found, expected: vertices });
+        for (what, found) in [("texture coordinates", self.uvs.len()), ("tangents", self.tangents.len())] {
+            if found != 0 && found != vertices {
+                return Err(BodyError::Count { mesh: mesh(), what, found, expected: vertices });
+            }
         }
         let corners = self.triangles.iter().enumerate();
         let corners = corners.flat_map(|(place, corners)| corners.map(|index| ("triangle", place, index, vertices)));
@@ -195,6 +199,9 @@ impl SkinnedMesh {
         }
         if let Some(place) = self.uvs.iter().position(|uv| !uv.is_finite()) {
             return value("texture coordinate", place);
+        }
+        if let Some(place) = self.tangents.iter().position(|tangent| !tangent.is_finite()) {
+            return value("tangent", place);
         }
         let sums_to_1 = |of: &Influences| (of.weights.iter().sum::<f32>() - 1.0).abs() < 1e-3;
         if let Some(place) = self.influences.iter().position(|of| !sums_to_1(of)) {

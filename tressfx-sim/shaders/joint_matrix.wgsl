@@ -27,6 +27,11 @@ fn transformed(by: Affine, point: vec3<f32>) -> vec3<f32> {
     return vec3(dot(by.x, place), dot(by.y, place), dot(by.z, place));
 }
 
+/// Where it takes a direction, of another length.
+fn linear(by: Affine, direction: vec3<f32>) -> vec3<f32> {
+    return vec3(dot(by.x.xyz, direction), dot(by.y.xyz, direction), dot(by.z.xyz, direction));
+}
+
 /// Where its linear part takes a normal, of another length: the cofactors keep it across the surface.
 fn cofactors_times(by: Affine, normal: vec3<f32>) -> vec3<f32> {
     let x = by.x.xyz;

@@ -1,8 +1,8 @@
 // A mesh as its joints and morph targets move it: linear blend skinning. One thread a vertex.
 
 import package::grid::{GROUP, thread_index};
-import package::joint_matrix::{blended, cofactors_times, transformed};
-import package::vector::direction_or;
+import package::joint_matrix::{blended, cofactors_times, linear, transformed};
+import package::vector::{across, direction_or};
 
 /// A vertex of the bind pose. Joints are two in a word, the lower half first.
 struct BoundVertex {
@@ -25,6 +25,11 @@ struct MorphOffset { position: vec4<f32>, normal: vec4<f32> }
 @group(0) @binding(4) var<storage, read> morph_offsets: array<MorphOffset>;
 @if(morphs)
 @group(0) @binding(5) var<storage, read> morph_weights: array<f32>;
+/// Unit tangents, and the side of the bitangent.
+@if(tangents)
+@group(0) @binding(6) var<storage, read> bound_tangents: array<vec4<f32>>;
+@if(tangents)
+@group(0) @binding(7) var<storage, read_write> tangents: array<vec4<f32>>;
 
 @compute @workgroup_size(GROUP)
 fn skin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -44,6 +49,12 @@ fn skin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     }
     let by = blended(bound.joints_01, bound.joints_23, bound.weights);
     let point = transformed(by, position);
-    let across = direction_or(cofactors_times(by, normal), bound.normal);
-    vertices[vertex] = SkinnedVertex(vec4(point, 1.0), vec4(across, 0.0));
+    let up = direction_or(cofactors_times(by, normal), bound.normal);
+    vertices[vertex] = SkinnedVertex(vec4(point, 1.0), vec4(up, 0.0));
+    @if(tangents) {
+        let along = linear(by, bound_tangents[vertex].xyz);
+        // In the plane of the surface, as the normal has it.
+        let flat = direction_or(along - up * dot(up, along), across(up));
+        tangents[vertex] = vec4(flat, bound_tangents[vertex].w);
+    }
 }

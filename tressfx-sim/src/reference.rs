@@ -48,7 +48,7 @@ pub use interpolate::interpolate;
 pub use moved::moved;
 pub use roots::{GuideRoot, RootPlace, roots};
 pub use simulation::Simulation;
-pub use skin::skin;
+pub use skin::{skin, skin_tangents};
 pub use surface_count::{NodeSurface, surface_count};
 pub use surface_emit::surface_emit;
 pub use surface_scan::surface_scan;

@@ -80,7 +80,9 @@ impl Body {
     /// The body that was asked for, without hair.
     pub(crate) fn read(args: &BodyArgs, backend: &mut dyn Backend, list: &mut PassList) -> Result<Option<Self>> {
         let Some(path) = &args.character else { return Ok(None) };
-        let character = character(path)?;
+        let mut character = character(path)?;
+        // Nothing here is bumpy.
+        character.mesh.tangents.clear();
         let animation = args.animation.as_deref().map(|name| find(&character, name)).transpose()?;
         let skinning = Skinning::new(backend, list, &character.mesh, false)?;
         Ok(Some(Self { character, animation, skinning, roots: Vec::new() }))

@@ -173,7 +173,8 @@ fn body(backend: &mut NullBackend, sim: &HairSim, strands: &Strands) -> Result<(
         ..SkinnedMesh::default()
     };
     let offsets = vec![MorphOffset { vertex: 0, position: glam::Vec3::Y, normal: glam::Vec3::ZERO }];
-    let mesh = SkinnedMesh { morphs: vec![Morph { name: "morph".into(), offsets }], ..joint.clone() };
+    let morphs = vec![Morph { name: "morph".into(), offsets }];
+    let mesh = SkinnedMesh { morphs, tangents: vec![glam::Vec4::X; 3], ..joint.clone() };
     Skinning::new(backend, &mut list, &joint, false)?;
     let skinning = Skinning::new(backend, &mut list, &mesh, false)?;
     let binding = tressfx_sim::body::Binding::of_guides(strands, &mesh, f64::INFINITY)?;

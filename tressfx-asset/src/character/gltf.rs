@@ -107,9 +107,13 @@ fn character(arrays: Arrays<'_>, document: &Document) -> Result<Character, FileE
             instance::add(&mut character, arrays, &node, &mesh, &places, &mut skins)?;
         }
     }
-    // Texture coordinates that a part of the mesh does not have are of no use to the whole.
-    if character.mesh.uvs.len() != character.mesh.positions.len() {
-        character.mesh.uvs.clear();
+    // Texture coordinates and tangents that a part of the mesh does not have are of no use to the whole.
+    let mesh = &mut character.mesh;
+    if mesh.uvs.len() != mesh.positions.len() {
+        mesh.uvs.clear();
+    }
+    if mesh.tangents.len() != mesh.positions.len() {
+        mesh.tangents.clear();
     }
     for animation in document.animations() {
         character.animations.push(Animation::new(arrays, &animation)?);

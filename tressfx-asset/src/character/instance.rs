@@ -1,7 +1,7 @@
 //! A mesh of a node, added to the one mesh of a character.
 
 use ::gltf::mesh::{Mode, Primitive, Semantic};
-use glam::{DAffine3, DMat4, Vec2, Vec3};
+use glam::{DAffine3, DMat4, Vec2, Vec3, Vec4};
 use tressfx_core::asset::AssetProblem;
 use tressfx_core::body::{Influences, Morph, MorphOffset};
 
@@ -153,9 +153,10 @@ impl Part<'_> {
         let placed = |position: &Vec3| self.skin.placed.transform_point3(position.as_dvec3()).as_vec3();
         let turned = |normal: &Vec3| (turn * normal.as_dvec3()).as_vec3();
         let influences = self.influences(character, primitive, count)?;
-        let uvs = self.uvs(primitive, count)?;
+        let (uvs, tangents) = (self.uvs(primitive, count)?, self.tangents(primitive, count)?);
         let mesh = &mut character.mesh;
         mesh.uvs.extend(uvs);
+        mesh.tangents.extend(tangents);
         mesh.positions.extend(positions.iter().map(placed));
         mesh.normals.extend(normals.iter().map(|normal| turned(normal).normalize_or(Vec3::Y)));
         mesh.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first as u32)));
@@ -193,6 +194,19 @@ impl Part<'_> {
         let Some(uvs) = primitive.get(&Semantic::TexCoords(0)) else { return Ok(Vec::new()) };
         let uvs = self.arrays.floats::<2>(&uvs, &format!("{}, texture coordinates", self.field), Some(count))?;
         Ok(uvs.into_iter().map(Vec2::from).collect())
+    }
+
+    /// Unit tangents, brought to where the vertices are; none where the primitive has none.
+    fn tangents(&self, primitive: &Primitive<'_>, count: usize) -> Result<Vec<Vec4>, FileError> {
+        let Some(tangents) = primitive.get(&Semantic::Tangents) else { return Ok(Vec::new()) };
+        let tangents = self.arrays.floats::<4>(&tangents, &format!("{}, tangents", self.field), Some(count))?;
+        let placed = |[x, y, z, w]: [f32; 4]| {
+            let along = self.skin.placed.transform_vector3(Vec3::new(x, y, z).as_dvec3());
+            // A mirror changes the side of the bitangent.
+            let side = if self.skin.placed.matrix3.determinant() < 0.0 { -w } else { w };
+            along.as_vec3().normalize_or(Vec3::X).extend(if side < 0.0 { -1.0 } else { 1.0 })
+        };
+        Ok(tangents.into_iter().map(placed).collect())
     }
 
     fn triangles(&self, primitive: &Primitive<'_>, vertices: usize) -> Result<Vec<[u32; 3]>, FileError> {

@@ -71,7 +71,7 @@ pub(crate) fn small_skin() -> Vec<u8> {
 pub(crate) const SMALL_MESH: &str = "# mesh\r\nnumOfBones 1\r\n0 root\r\nnumOfVertices 3\r\n0 0 0 0 0 0 1 0 0 0 0 1 0 0 0\r\n\
                           1 1 0 0 0 0 1 0 0 0 0 0.5 0 0 0\r\n2 0 1 0 0 0 1 0 0 0 0 1 0 0 0\r\nnumOfTriangles 1\r\n0 0 1 2\r\n";
 
-/// A triangle with two joints, one below a node that enlarges a hundred times, texture coordinates, a morph target and an animation of all properties.
+/// A triangle with two joints, one below a node that enlarges a hundred times, texture coordinates, tangents (the numbers of the weights), a morph target and an animation of all properties.
 pub(crate) fn small_gltf() -> String {
     let mut data = Vec::new();
     let mut views = Vec::new();
@@ -111,7 +111,7 @@ pub(crate) fn small_gltf() -> String {
 "bufferViews":[{}],"accessors":[{}],
 "nodes":[{{"name":"big","scale":[100,100,100],"children":[1]}},{{"name":"tip"}},{{"mesh":0,"skin":0}}],
 "skins":[{{"joints":[0,1]}}],
-"meshes":[{{"weights":[0.5],"primitives":[{{"attributes":{{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":7,"TEXCOORD_0":8}},"targets":[{{"POSITION":2}}]}}]}}],
+"meshes":[{{"weights":[0.5],"primitives":[{{"attributes":{{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":7,"TEXCOORD_0":8,"TANGENT":1}},"targets":[{{"POSITION":2}}]}}]}}],
 "animations":[{{"name":"all","samplers":[{{"input":3,"output":4}},{{"input":3,"output":5,"interpolation":"CUBICSPLINE"}},{{"input":3,"output":6,"interpolation":"STEP"}}],
 "channels":[{{"sampler":0,"target":{{"node":1,"path":"rotation"}}}},{{"sampler":1,"target":{{"node":1,"path":"translation"}}}},{{"sampler":2,"target":{{"node":2,"path":"weights"}}}}]}}]}}"#,
         data.len(),

@@ -43,7 +43,7 @@ gpu_struct! {
 }
 
 /// A [`SkinnedMesh`] on the GPU, and the kernel that moves it. It takes 80 bytes a vertex, 32 an offset of a morph target and 48 a joint; 32 a vertex more where
-/// the frame before is kept.
+/// the frame before is kept, and 32 where the mesh has tangents: clear [`SkinnedMesh::tangents`] if nobody asks for them.
 #[derive(Debug)]
 pub struct Skinning {
     /// Positions and normals for the checks of poses, without the arrays.
@@ -52,6 +52,7 @@ pub struct Skinning {
     morph_weights: Option<BufferId>,
     vertices: BufferId,
     past: Option<BufferId>,
+    tangents: Option<BufferId>,
     vertex_count: u32,
     has_pose: bool,
     kernel: Kernel,
@@ -99,14 +100,26 @@ impl Skinning {
                 ]);
                 morph_weights = Some(weights);
             }
-            let specialization = Specialization::new().feature("morphs", offsets.is_some());
+            let tangents = match &mesh.tangents[..] {
+                [] => None,
+                of_mesh => {
+                    let bound = storage(backend, "hair.body.bound_tangents", 16, vertex_count)?;
+                    let tangents = storage(backend, "hair.body.tangents", 16, vertex_count)?;
+                    uploads.upload(bound, 0, of_mesh);
+                    resources.extend([("bound_tangents", bound.into()), ("tangents", tangents.into())]);
+                    Some(tangents)
+                }
+            };
+            let specialization = Specialization::new();
+            let specialization = specialization.feature("morphs", offsets.is_some());
+            let specialization = specialization.feature("tangents", tangents.is_some());
             let shader = Arc::new(Shader::new(&skin::SOURCE, &specialization)?);
             let kernel = backend.create_compute(&ComputeDesc::new(shader))?;
             let bindings = kernel.bind(&resources)?;
-            Ok::<_, SimError>((palette, morph_weights, vertices, past, kernel, bindings))
+            Ok::<_, SimError>((palette, morph_weights, (vertices, past, tangents), kernel, bindings))
         })?;
         list.append(&uploads);
-        let (palette, morph_weights, vertices, past, kernel, bindings) = made;
+        let (palette, morph_weights, (vertices, past, tangents), kernel, bindings) = made;
         let mesh = SkinnedMesh {
             name: mesh.name.clone(),
             joints: mesh.joints.clone(),
@@ -118,7 +131,19 @@ impl Skinning {
             ..SkinnedMesh::default()
         };
         let has_pose = false;
-        Ok(Self { mesh, palette, morph_weights, vertices, past, vertex_count, has_pose, kernel, bindings, owner })
+        Ok(Self {
+            mesh,
+            palette,
+            morph_weights,
+            vertices,
+            past,
+            tangents,
+            vertex_count,
+            has_pose,
+            kernel,
+            bindings,
+            owner,
+        })
     }
 
     /// Moves the mesh: one pass. What it was before is kept where that was asked for; the first pose is its own past.
@@ -148,6 +173,11 @@ impl Skinning {
     /// The same before the last [`Skinning::pose`], for motion vectors; `None` where it is not kept.
     pub fn past_vertices(&self) -> Option<BufferId> {
         self.past
+    }
+
+    /// A `vec4<f32>` a vertex: its unit tangent, across the normal, and the side of the bitangent; `None` where the mesh has none. Morph targets move them only by their normals.
+    pub fn tangents(&self) -> Option<BufferId> {
+        self.tangents
     }
 
     /// What [`TriangleRoots`](super::TriangleRoots) reads.

@@ -3,6 +3,8 @@
 use glam::{DAffine3, DMat3, DVec3};
 use tressfx_core::body::{Influences, MeshPose, SkinnedMesh};
 
+use super::vector::{across, direction_or};
+
 /// Positions and normals of a mesh in a pose. The pose is one of the mesh.
 pub fn skin(mesh: &SkinnedMesh, pose: &MeshPose) -> Vec<[DVec3; 2]> {
     let vertices = mesh.positions.iter().zip(&mesh.normals);
@@ -21,6 +23,17 @@ pub fn skin(mesh: &SkinnedMesh, pose: &MeshPose) -> Vec<[DVec3; 2]> {
         [by.transform_point3(position), across.normalize_or(bound.as_dvec3())]
     };
     vertices.into_iter().zip(bound).map(skinned).collect()
+}
+
+/// The tangents of a mesh in a pose, in the plane across its normals; none where it has none. The fourth number stays.
+pub fn skin_tangents(mesh: &SkinnedMesh, pose: &MeshPose) -> Vec<DVec3> {
+    let posed = skin(mesh, pose);
+    let vertices = mesh.tangents.iter().zip(&mesh.influences).zip(posed);
+    let tangent = |((tangent, of), [_, normal]): ((&glam::Vec4, &Influences), [DVec3; 2])| {
+        let along = blended(of, &pose.joints).matrix3 * tangent.truncate().as_dvec3();
+        direction_or(along - normal * normal.dot(along), across(normal))
+    };
+    vertices.map(tangent).collect()
 }
 
 /// The sum of the matrices of joints, each by its weight.
