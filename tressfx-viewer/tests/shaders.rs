@@ -97,14 +97,16 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     let both = |name| [format!("{name} false"), format!("{name} true")];
     let names = [
         "bounded",
+        "clump",
         "fibre",
         "fields",
         "follows",
         "global_shape",
         "hair_output",
         "internal_damping",
-        "open_edges",
         "morphs",
+        "noise",
+        "open_edges",
         "ordered",
         "own_colors",
         "pinned_tips",
@@ -115,6 +117,8 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "roots",
         "shaded",
         "shadows",
+        "spline",
+        "tangents",
         "unshaded",
         "volume",
     ];
