@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
-use tressfx_benches::{DEVICES, Failure, median_and_least, timed};
+use tressfx_benches::{DEVICES, Failure, median_and_least, timed_by_name};
 use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::{BufferDesc, ComputeDesc, Run};
 use tressfx_core::body::{Influences, MeshPose, SkinnedMesh};
@@ -28,15 +28,7 @@ fn main() -> Result<(), Failure> {
     let is_test = options.iter().any(|option| option == "--test");
     let frames = option("--frames").map_or(Ok(if is_test { 1 } else { FRAMES }), str::parse)?;
     let backend = option("--backend").unwrap_or(DEVICES[0].0);
-    let (name, open) = DEVICES.iter().find(|(name, _)| *name == backend).ok_or("no such backend")?;
-    let mut backend = match timed(name, open()) {
-        Ok(backend) => backend,
-        Err(message) => {
-            println!("{message}");
-            return Ok(());
-        }
-    };
-    println!("{name}: {}", backend.caps().adapter);
+    let Some(mut backend) = timed_by_name(backend)? else { return Ok(()) };
     let side = if is_test { 16 } else { 320 };
     body(backend.as_mut(), side, frames)?;
     let strands = if is_test { 500 } else { 100_000 };

@@ -8,7 +8,7 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 use tressfx_asset::mesh::Mesh;
-use tressfx_benches::{DEVICES, Failure, median_and_least, timed};
+use tressfx_benches::{DEVICES, Failure, median_and_least, timed_by_name};
 use tressfx_core::backend::Run;
 use tressfx_core::pass::PassList;
 use tressfx_sim::field::{FieldDesc, Fields};
@@ -23,15 +23,7 @@ fn main() -> Result<(), Failure> {
     let is_test = options.iter().any(|option| option == "--test");
     let frames = option("--frames").map_or(Ok(if is_test { 1 } else { FRAMES }), str::parse)?;
     let backend = option("--backend").unwrap_or(DEVICES[0].0);
-    let (name, open) = DEVICES.iter().find(|(name, _)| *name == backend).ok_or("no such backend")?;
-    let mut backend = match timed(name, open()) {
-        Ok(backend) => backend,
-        Err(message) => {
-            println!("{message}");
-            return Ok(());
-        }
-    };
-    println!("{name}: {}", backend.caps().adapter);
+    let Some(mut backend) = timed_by_name(backend)? else { return Ok(()) };
     let named = meshes.iter().map(|path| Ok((path.clone(), Mesh::read(path)?)));
     let mut meshes = named.collect::<Result<Vec<_>, Failure>>()?;
     if meshes.is_empty() {

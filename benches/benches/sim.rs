@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use glam::{Quat, Vec3, Vec4};
-use tressfx_benches::{DEVICES, Failure, asset, timed};
+use tressfx_benches::{DEVICES, Failure, asset, timed_by_name};
 use tressfx_core::backend::Run as Device;
 use tressfx_core::pass::PassList;
 use tressfx_core::shape::Capsule;
@@ -77,15 +77,7 @@ fn usual_grooms() -> Vec<String> {
 
 fn main() -> Result<(), Failure> {
     let args = Args::parse()?;
-    let (name, open) = DEVICES.iter().find(|(name, _)| *name == args.backend).ok_or("no such backend")?;
-    let mut backend = match timed(name, open()) {
-        Ok(backend) => backend,
-        Err(message) => {
-            println!("{message}");
-            return Ok(());
-        }
-    };
-    println!("{name}: {}", backend.caps().adapter);
+    let Some(mut backend) = timed_by_name(&args.backend)? else { return Ok(()) };
     for groom in &args.grooms {
         bench(backend.as_mut(), groom, args.frames, args.warm_up)?;
     }

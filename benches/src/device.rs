@@ -3,20 +3,39 @@
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_core::backend::Run;
-use tressfx_core::error::Result;
+
+use crate::groom::Failure;
 
 /// Opens a device.
-pub type Open = fn() -> Result<Box<dyn Run>>;
+pub type Open = fn() -> tressfx_core::Result<Box<dyn Run>>;
 
 /// The backends, by name.
 pub const DEVICES: [(&str, Open); 2] =
     [("wgpu", || Ok(Box::new(WgpuBackend::headless()?))), ("vulkan", || Ok(Box::new(VulkanBackend::headless()?)))];
 
+/// The device of the backend of a name, whose adapter is printed; none where it cannot be timed, and why is printed.
+///
+/// # Errors
+/// A name that no backend has.
+pub fn timed_by_name(name: &str) -> Result<Option<Box<dyn Run>>, Failure> {
+    let (name, open) = DEVICES.iter().find(|(known, _)| *known == name).ok_or("no such backend")?;
+    match timed(name, open()) {
+        Ok(backend) => {
+            println!("{name}: {}", backend.caps().adapter);
+            Ok(Some(backend))
+        }
+        Err(message) => {
+            println!("{message}");
+            Ok(None)
+        }
+    }
+}
+
 /// A device that has timestamps.
 ///
 /// # Errors
 /// Why it is left out, in words.
-pub fn timed(name: &str, opened: Result<Box<dyn Run>>) -> Result<Box<dyn Run>, String> {
+pub fn timed(name: &str, opened: tressfx_core::Result<Box<dyn Run>>) -> Result<Box<dyn Run>, String> {
     let backend = opened.map_err(|error| format!("{name}: skipped: {error}"))?;
     let caps = backend.caps();
     if !caps.timestamps {

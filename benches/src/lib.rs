@@ -7,7 +7,7 @@ mod recorder;
 mod spread;
 
 pub use clock::GpuClock;
-pub use device::{DEVICES, Open, timed};
+pub use device::{DEVICES, Open, timed, timed_by_name};
 pub use groom::{Failure, asset, strands};
 pub use recorder::Recorder;
 pub use spread::{Spread, median_and_least};
