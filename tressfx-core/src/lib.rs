@@ -14,6 +14,7 @@ pub mod check;
 mod epoch;
 pub mod error;
 mod format;
+pub mod hash;
 pub mod hazards;
 pub mod id;
 pub mod null;
@@ -22,6 +23,7 @@ pub mod shader;
 pub mod shape;
 pub mod strand_buffers;
 pub mod strands;
+pub mod texels;
 pub mod uniform_array;
 pub mod view;
 

@@ -1,6 +1,7 @@
 //! Pictures that say from place to place how hair grows.
 
 use thiserror::Error;
+use tressfx_core::texels::texels_beside;
 
 /// A picture over a mesh: numbers from 0 to 1, row by row from the top, as many for each texel as there are channels.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,15 +76,8 @@ impl SurfaceMap {
     /// The numbers at texture coordinates that are finite, between texels bilinear: (0, 0) is the upper left corner, (1, 1) the lower right one, beyond them the
     /// map repeats. Channels beyond its own are 0.
     pub fn at<const N: usize>(&self, uv: [f64; 2]) -> [f64; N] {
-        let axis = |x: f64, size: u32| {
-            let texels = f64::from(size);
-            let at = (x - x.floor()) * texels - 0.5;
-            let low = at.floor();
-            let wrapped = |texel: f64| texel.rem_euclid(texels).min(texels - 1.0) as usize;
-            ([wrapped(low), wrapped(low + 1.0)], at - low)
-        };
-        let ([left, right], across) = axis(uv[0], self.size[0]);
-        let ([above, below], down) = axis(uv[1], self.size[1]);
+        let ([left, right], across) = texels_beside(uv[0], self.size[0]);
+        let ([above, below], down) = texels_beside(uv[1], self.size[1]);
         let channels = self.channels as usize;
         let texel = |x: usize, y: usize, channel: usize| match self
             .texels

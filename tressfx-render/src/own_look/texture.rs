@@ -1,6 +1,7 @@
 //! A picture that colours strands.
 
 use glam::DVec4;
+use tressfx_core::texels::texels_beside;
 
 /// A picture: sRGB and opacity, 8 bits each, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,15 +55,8 @@ impl ColorTexture {
         if !uv.iter().all(|x| x.is_finite()) {
             return self.mean;
         }
-        let axis = |x: f64, size: u32| {
-            let texels = f64::from(size);
-            let at = (x - x.floor()) * texels - 0.5;
-            let low = at.floor();
-            let wrapped = |texel: f64| texel.rem_euclid(texels).min(texels - 1.0) as usize;
-            ([wrapped(low), wrapped(low + 1.0)], at - low)
-        };
-        let ([left, right], across) = axis(uv[0], self.size[0]);
-        let ([above, below], down) = axis(uv[1], self.size[1]);
+        let ([left, right], across) = texels_beside(uv[0], self.size[0]);
+        let ([above, below], down) = texels_beside(uv[1], self.size[1]);
         let row = |y| self.texel(left, y).lerp(self.texel(right, y), across);
         row(above).lerp(row(below), down)
     }

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, DVec4};
 
+use tressfx_core::hash::hash;
 use tressfx_core::view::View;
 
 use super::projection::Projection;
@@ -166,12 +167,6 @@ fn perpendicular(cosine: f64) -> f64 {
 fn smoothstep(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
-}
-
-fn hash(seed: u32) -> f64 {
-    let state = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    f64::from(((word >> 22) ^ word) >> 8) / f64::from(1 << 24)
 }
 
 fn strand_random(strand: u32, guide: u32, stream: u32) -> f64 {

@@ -1,6 +1,7 @@
 //! `hair.sim.interpolate` in f64.
 
 use glam::{DVec2, DVec3};
+use tressfx_core::hash::hash;
 
 use super::vector::{across, direction_or};
 use crate::interpolate::{BetweenGuides, InterpolationUniform};
@@ -90,11 +91,4 @@ fn noise(index: u32, at: f64) -> DVec2 {
     };
     let (wave, share) = (at.floor(), at - at.floor());
     random(wave as u32).lerp(random(wave as u32 + 1), share * share * (3.0 - 2.0 * share))
-}
-
-/// `shaders/hash.wgsl` of core.
-fn hash(seed: u32) -> f64 {
-    let state = seed.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
-    f64::from(((word >> 22) ^ word) >> 8) / f64::from(1 << 24)
 }
