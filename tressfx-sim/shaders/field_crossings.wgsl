@@ -2,9 +2,10 @@
 // along z leaves more than it enters. Sixteen lanes a triangle go through the lines that may cross it. Places across the lines are integers, parts
 // of a cell, so that of two triangles with a common edge exactly one is crossed, whatever the rounding.
 
-import package::field_mesh::{Triangle, build, in_cells, is_sound, mesh_triangle, node_index};
+import package::field_mesh::{Triangle, build, in_cells, is_sound, mesh_triangle};
 import package::grid::{GROUP, thread_index};
 import package::field_side::{is_left, part_of, twice_area};
+import package::nodes::node_index;
 
 @group(0) @binding(4) var<storage, read_write> crossings: array<atomic<i32>>;
 
@@ -41,7 +42,7 @@ fn field_crossings(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgro
                             max(heights.x, max(heights.y, heights.z)));
         let node = min(i32(ceil(crossed)), i32(build.nodes.z)) - 1;
         if (node < 0) { continue; }
-        let place = node_index(vec3<u32>(vec3(column, node)));
+        let place = node_index(vec3<u32>(vec3(column, node)), build.nodes);
         atomicAdd(&crossings[place], select(-1, 1, area > 0));
     }
 }

@@ -69,16 +69,6 @@ fn to_cells(vertex: vec3<f32>) -> vec3<f32> {
     return (vertex - grid.origin) / grid.cell;
 }
 
-fn node_index(node: vec3<u32>) -> u32 {
-    return (node.z * build.nodes.y + node.y) * build.nodes.x + node.x;
-}
-
-/// A node of an index below `node_count`.
-fn node_at(index: u32) -> vec3<u32> {
-    let row = index / build.nodes.x;
-    return vec3(index % build.nodes.x, row % build.nodes.y, row / build.nodes.y);
-}
-
 fn node_count() -> u32 {
     return build.nodes.x * build.nodes.y * build.nodes.z;
 }

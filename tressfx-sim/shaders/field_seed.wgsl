@@ -1,7 +1,8 @@
 // What the flood begins with: of each node near the surface, the nearest point of its nearest triangle. One thread a node.
 
-import package::field_mesh::{build, in_cells, mesh_triangle, nearest_on, node_at, node_count};
+import package::field_mesh::{build, in_cells, mesh_triangle, nearest_on, node_count};
 import package::grid::{GROUP, thread_index};
+import package::nodes::node_at;
 
 @group(0) @binding(4) var<storage, read> band: array<u32>;
 /// The bits of the point, in cells, and the index of its triangle and 1; 0 where nothing is known yet.
@@ -18,6 +19,6 @@ fn field_seed(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         return;
     }
     let of_triangle = ~kept & ((1u << build.index_bits) - 1u);
-    let point = nearest_on(in_cells(mesh_triangle(of_triangle)), vec3<f32>(node_at(index)));
+    let point = nearest_on(in_cells(mesh_triangle(of_triangle)), vec3<f32>(node_at(index, build.nodes)));
     nearest_points[index] = vec4(bitcast<vec3<u32>>(point), of_triangle + 1u);
 }

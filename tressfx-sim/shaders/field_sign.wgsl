@@ -5,12 +5,13 @@
 // is closed). That is the generalised winding number (Jacobson et al. 2013), exactly, without a sum over all triangles.
 
 import package::field::NO_SURFACE;
-import package::field_mesh::{build, grid, node_at, node_count, node_index};
+import package::field_mesh::{build, grid, node_count};
 import package::grid::{GROUP, thread_index};
 @if(open_edges)
 import package::field_mesh::{is_near, to_cells, vertex_at};
 @if(open_edges)
 import package::field_side::{is_left, part_of, twice_area};
+import package::nodes::{node_at, node_index};
 
 @group(0) @binding(4) var<storage, read> known_points: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> crossings: array<i32>;
@@ -24,9 +25,9 @@ fn field_sign(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
               @builtin(local_invocation_index) lane: u32) {
     let index = thread_index(group, groups, lane);
     if (index >= node_count()) { return; }
-    let node = node_at(index);
+    let node = node_at(index, build.nodes);
     var left = 0;
-    for (var z = node.z; z < build.nodes.z; z++) { left += crossings[node_index(vec3(node.xy, z))]; }
+    for (var z = node.z; z < build.nodes.z; z++) { left += crossings[node_index(vec3(node.xy, z), build.nodes)]; }
     var winding = f32(left);
     @if(open_edges) {
         winding += turns_of_open_edges(vec3<f32>(node), vec2<i32>(node.xy) * build.parts);

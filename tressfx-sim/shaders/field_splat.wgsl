@@ -2,9 +2,10 @@
 // node keeps is one integer, of which the largest stays, so that no order of threads matters: the distance in coarse steps, then the index.
 
 import package::field_mesh::{
-    Triangle, build, in_cells, is_sound, is_wide, mesh_triangle, nearest_on, node_index, squared_distance,
+    Triangle, build, in_cells, is_sound, is_wide, mesh_triangle, nearest_on, squared_distance,
 };
 import package::grid::{GROUP, thread_index};
+import package::nodes::node_index;
 
 /// The complement of the steps and the index; 0 where no triangle is near.
 @group(0) @binding(4) var<storage, read_write> band: array<atomic<u32>>;
@@ -68,5 +69,5 @@ fn keep_nearest(triangle: Triangle, index: u32, node: vec3<u32>) {
     // One step less than there are, so that the complement is never 0.
     let steps = f32((1u << (32u - build.index_bits)) - 2u);
     let packed = (u32(apart / BAND * steps) << build.index_bits) | index;
-    atomicMax(&band[node_index(node)], ~packed);
+    atomicMax(&band[node_index(node, build.nodes)], ~packed);
 }

@@ -1,8 +1,8 @@
 // The zero surface of a field, by marching tetrahedra: each cell is six tetrahedra around its diagonal (Kuhn 1960), the same in all cells, so that neighbours have
 // the same edges and no case is ambiguous. Edges go from a node to the seven other corners of its cell, and belong to that node.
-// A corner of a cell is a number of three bits: whether it is the further one along x, y and z.
 
 import package::field::{FIRST, HEADER, NODES, fields};
+import package::nodes::{corner_of, node_index};
 
 struct SurfaceBuild {
     /// The index of the field.
@@ -25,22 +25,8 @@ fn sides() -> vec3<u32> {
     return vec3(fields[at], fields[at + 1u], fields[at + 2u]);
 }
 
-fn node_at(index: u32, nodes: vec3<u32>) -> vec3<u32> {
-    let row = index / nodes.x;
-    return vec3(index % nodes.x, row % nodes.y, row / nodes.y);
-}
-
-fn node_index(node: vec3<u32>, nodes: vec3<u32>) -> u32 {
-    return (node.z * nodes.y + node.y) * nodes.x + node.x;
-}
-
 fn distance_at(node: vec3<u32>, nodes: vec3<u32>) -> f32 {
     return bitcast<f32>(fields[fields[HEADER * build.field + FIRST] + node_index(node, nodes)]);
-}
-
-/// From a node to a corner of its cell.
-fn way_to(corner: u32) -> vec3<u32> {
-    return vec3(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
 }
 
 /// The corners of the cell of a node that are inside, a bit each. Corners beyond the last node are as the node is.
@@ -48,7 +34,7 @@ fn inside_corners(node: vec3<u32>, nodes: vec3<u32>) -> u32 {
     let is_inside = distance_at(node, nodes) < 0.0;
     var inside = u32(is_inside);
     for (var corner = 1u; corner < 8u; corner++) {
-        let at = node + way_to(corner);
+        let at = node + corner_of(corner);
         var corner_is_inside = is_inside;
         if (all(at < nodes)) { corner_is_inside = distance_at(at, nodes) < 0.0; }
         inside |= u32(corner_is_inside) << corner;

@@ -1,8 +1,9 @@
 // How many vertices and triangles of the surface each node has. One thread a node; the threads of a group are a block, whose sums are kept.
 
 import package::grid::{GROUP, thread_index};
+import package::nodes::node_at;
 import package::surface::{
-    TETRAHEDRA, build, corners_of, crossed_edges, has_cell, inside_corners, inside_of, node_at, sides,
+    TETRAHEDRA, build, corners_of, crossed_edges, has_cell, inside_corners, inside_of, sides,
 };
 
 /// The edges that are crossed, 7 bits; vertices before it in its block, from bit 8 on; triangles before it, from bit 20 on.

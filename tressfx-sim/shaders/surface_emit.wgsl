@@ -2,8 +2,9 @@
 
 import package::field::{CELL, ORIGIN, header};
 import package::grid::{GROUP, thread_index};
+import package::nodes::{corner_of, node_at, node_index};
 import package::surface::{
-    TETRAHEDRA, build, corners_of, distance_at, has_cell, inside_corners, inside_of, node_at, node_index, sides, way_to,
+    TETRAHEDRA, build, corners_of, distance_at, has_cell, inside_corners, inside_of, sides,
 };
 
 @group(0) @binding(1) var<storage, read> cells: array<u32>;
@@ -34,7 +35,7 @@ fn emit_vertices(index: u32, node: vec3<u32>, nodes: vec3<u32>) {
     var at = first_vertex(index);
     for (var corner = 1u; corner < 8u; corner++) {
         if ((edges & (1u << (corner - 1u))) == 0u) { continue; }
-        let way = way_to(corner);
+        let way = corner_of(corner);
         let other = node + way;
         let share = here / (here - distance_at(other, nodes));
         let place = vec3<f32>(node) + share * vec3<f32>(way);
@@ -118,7 +119,7 @@ fn first_vertex(index: u32) -> u32 {
 
 /// The vertex on the edge between two corners of a cell: it belongs to the nearer one, and counts those before it.
 fn vertex_on(node: vec3<u32>, one: u32, other: u32, nodes: vec3<u32>) -> u32 {
-    let owner = node_index(node + way_to(one & other), nodes);
+    let owner = node_index(node + corner_of(one & other), nodes);
     let edge = (one ^ other) - 1u;
     return first_vertex(owner) + countOneBits(cells[owner] & ((1u << edge) - 1u));
 }

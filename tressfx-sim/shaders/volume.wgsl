@@ -35,15 +35,6 @@ fn place_of(point: vec3<f32>) -> Place {
     return Place(vec3<u32>(node), scaled - node, is_inside);
 }
 
-fn node_index(node: vec3<u32>) -> u32 {
-    return (node.z * volume.nodes.y + node.y) * volume.nodes.x + node.x;
-}
-
-/// A corner of a cell, 0 to 7.
-fn corner_of(corner: u32) -> vec3<u32> {
-    return vec3(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
-}
-
 /// The weight of a corner: trilinear.
 fn weight_of(share: vec3<f32>, corner: vec3<u32>) -> f32 {
     let along = select(1.0 - share, share, corner == vec3(1u));

@@ -1,7 +1,8 @@
 // What the sums at the nodes come to: the slope of the pressure and the mean velocity. One thread a node.
 
 import package::grid::{GROUP, thread_index};
-import package::volume::{VolumeNode, node_index, volume};
+import package::nodes::{node_at, node_index};
+import package::volume::{VolumeNode, volume};
 
 /// Mass and momentum.
 @group(0) @binding(2) var<storage, read> sums: array<vec4<i32>>;
@@ -21,7 +22,7 @@ fn volume_nodes(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
         node_values[index] = VolumeNode(vec3(0.0), vec3(0.0));
         return;
     }
-    let node = vec3(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+    let node = node_at(index, size);
     var slope: vec3<f32>;
     for (var axis = 0u; axis < 3u; axis++) {
         var before = node;
@@ -36,6 +37,6 @@ fn volume_nodes(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
 
 /// By how much more mass there is than without pressure, as a share.
 fn pressure(node: vec3<u32>) -> f32 {
-    let index = node_index(node);
+    let index = node_index(node, volume.nodes);
     return max(f32(sums[index].x) / rest_masses[index] - 1.0, 0.0);
 }

@@ -2,9 +2,10 @@
 // velocity goes into what the solver of the next sub-step begins with. One thread a vertex of a guide.
 
 import package::grid::{GROUP, thread_index};
+import package::nodes::{corner_of, node_index};
 import package::step::step;
 import package::vector::rotate;
-import package::volume::{Place, VolumeNode, corner_of, node_index, place_of, volume, weight_of};
+import package::volume::{Place, VolumeNode, place_of, volume, weight_of};
 import package::volume_vertex::{Seen, positions, seen};
 @if(!rods)
 import package::volume_vertex::previous;
@@ -44,7 +45,7 @@ fn push_at(place: Place, velocity: vec3<f32>) -> vec3<f32> {
     var mean = vec3(0.0);
     for (var corner = 0u; corner < 8u; corner++) {
         let offset = corner_of(corner);
-        let value = node_values[node_index(place.node + offset)];
+        let value = node_values[node_index(place.node + offset, volume.nodes)];
         let weight = weight_of(place.share, offset);
         slope += weight * value.slope;
         mean += weight * value.velocity;

@@ -2,8 +2,9 @@
 // threads matters. One thread a vertex of a guide.
 
 import package::grid::{GROUP, thread_index};
+import package::nodes::{corner_of, node_index};
 import package::step::step;
-import package::volume::{corner_of, node_index, place_of, volume, weight_of};
+import package::volume::{place_of, volume, weight_of};
 import package::volume_vertex::{positions, seen};
 import package::wind::scrambled;
 
@@ -26,7 +27,7 @@ fn volume_splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
     for (var corner = 0u; corner < 8u; corner++) {
         let offset = corner_of(corner);
         let amount = mass * weight_of(place.share, offset);
-        let first = 4u * node_index(place.node + offset);
+        let first = 4u * node_index(place.node + offset, volume.nodes);
         let bits = scrambled(8u * thread + corner);
         atomicAdd(&sums[first], rounded(amount, bits));
         atomicAdd(&sums[first + 1u], rounded(amount * velocity.x, bits >> 8u));

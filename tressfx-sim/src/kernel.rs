@@ -53,6 +53,7 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("joint_matrix", include_str!("../shaders/joint_matrix.wgsl")),
     ("lengths", include_str!("../shaders/lengths.wgsl")),
     ("local_shape", include_str!("../shaders/local_shape.wgsl")),
+    ("nodes", include_str!("../shaders/nodes.wgsl")),
     ("rod", include_str!("../shaders/rod.wgsl")),
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
     ("rod_touch", include_str!("../shaders/rod_touch.wgsl")),
