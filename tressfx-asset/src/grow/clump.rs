@@ -1,6 +1,8 @@
 //! Clumps: strands whose tips are drawn to the strand in their middle.
 
 use glam::DVec3;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
 
 use super::eliminate::eliminate;
 use super::scatter::Roots;
@@ -31,35 +33,21 @@ pub(super) fn draw_together(growth: &Growth, roots: &Roots, points: &mut [DVec3]
     drawn.collect()
 }
 
-/// Finds the nearest of some places: they are sorted along an axis, and what is further along it than the best so far is not looked at.
+/// Finds the nearest of some places.
 struct Nearest<'a> {
     places: &'a [SkinPlace],
-    sorted: Vec<usize>,
+    tree: RTree<GeomWithData<[f64; 3], usize>>,
 }
 
 impl<'a> Nearest<'a> {
-    fn new(places: &'a [SkinPlace], mut sorted: Vec<usize>) -> Self {
-        sorted.sort_by(|&one, &other| places[one].position.x.total_cmp(&places[other].position.x));
-        Self { places, sorted }
+    fn new(places: &'a [SkinPlace], some: Vec<usize>) -> Self {
+        let entry = |place: usize| GeomWithData::new(places[place].position.to_array(), place);
+        Self { places, tree: RTree::bulk_load(some.into_iter().map(entry).collect()) }
     }
 
     /// That on the same side of the skin.
     fn of(&self, place: &SkinPlace) -> Option<usize> {
-        let from = self.sorted.partition_point(|&other| self.places[other].position.x < place.position.x);
-        let (mut best, mut distance) = (None, f64::INFINITY);
-        let mut look = |side: &mut dyn Iterator<Item = &usize>| {
-            for &other in side {
-                let SkinPlace { position, normal, .. } = self.places[other];
-                if (position.x - place.position.x).abs() >= distance {
-                    break;
-                }
-                if normal.dot(place.normal) > 0.0 && position.distance(place.position) < distance {
-                    (best, distance) = (Some(other), position.distance(place.position));
-                }
-            }
-        };
-        look(&mut self.sorted[from..].iter());
-        look(&mut self.sorted[..from].iter().rev());
-        best
+        let mut by_distance = self.tree.nearest_neighbor_iter(place.position.to_array()).map(|entry| entry.data);
+        by_distance.find(|&other| self.places[other].normal.dot(place.normal) > 0.0)
     }
 }
