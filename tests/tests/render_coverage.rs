@@ -3,8 +3,15 @@
 mod support;
 
 use glam::{DVec2, Vec3};
+use tressfx_asset::grow::{Amount, Direction, Growth, SurfaceMap, grow};
+use tressfx_asset::mesh::skinned_obj;
 use tressfx_conformance::render::{Groom, Screen};
+use tressfx_conformance::sim::strands_of;
+use tressfx_core::null::NullBackend;
+use tressfx_core::pass::PassList;
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_render::{Light, Material, reference};
+use tressfx_sim::{Interpolation, InterpolationParams};
 
 use support::screen;
 
@@ -138,5 +145,59 @@ fn coverage_in_f64_is_the_area_of_a_polygon() {
             let (exact, counted) = (reference::coverage(distance, half, normal), sampled(distance, half, normal));
             assert!((exact - counted).abs() < 0.004, "{degrees} {distance} {half}: {exact}, counted {counted}");
         }
+    }
+}
+
+/// A hundred thousand strands between guides that are grown by a map, four times as dense on the right as on the left: each ninth of the skin is covered as the map says.
+/// Strands that lie over each other count each for itself, which is the optical depth.
+#[test]
+fn covered_area_follows_the_map_of_density() {
+    const WIDTH: usize = 384;
+    const STRANDS: u32 = 100_000;
+    let Some(mut screen) = screen(|setup| (setup.size, setup.hair_output) = ([WIDTH as u32, 256], true)) else {
+        return;
+    };
+    let skin = "v -1 -0.6 0\nv 1 -0.6 0\nv 1 0.6 0\nv -1 0.6 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+    let densities = (0..256).map(|texel| 0.25 + 0.75 * (texel as f32 + 0.5) / 256.0).collect();
+    let growth = Growth {
+        amount: Amount::Count(2000),
+        density_map: Some(SurfaceMap::new([256, 1], 1, densities).unwrap()),
+        vertices: 16,
+        length: 0.02,
+        direction: Direction::Comb(Vec3::NEG_Y),
+        ..Growth::default()
+    };
+    let guides = strands_of(grow(&skinned_obj("skin", skin.as_bytes()).unwrap(), &growth).unwrap(), 0);
+    let mut backend = NullBackend::default();
+    let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&guides), Vec3::ZERO).unwrap();
+    let of_guides = (&buffers, &guides);
+    let params = InterpolationParams::default();
+    let between = Interpolation::new(&mut backend, &mut PassList::new(), of_guides, STRANDS, &params).unwrap();
+    let strands = between.rest(&guides, STRANDS).unwrap();
+    let pixels_per_unit = screen.view.lens().focal.x / 3.0;
+    let material = opaque(0.1 / pixels_per_unit).with(|m| (m.opacity, m.tip_opacity, m.tip_width) = (0.5, 0.5, 1.0));
+    let groom = Groom { pose: tressfx_core::view::Pose::IDENTITY, ..Groom::of(&strands, material) };
+    let picture = screen.hair(&[&groom]);
+    // The groom is drawn about its own middle.
+    let middle = f64::from(strands.bounds.rounded_center().x);
+    let part_of = |column: usize| {
+        let x = (column as f64 + 0.5 - WIDTH as f64 / 2.0) / f64::from(pixels_per_unit) + middle;
+        // Beyond the outermost guides there is no hair: parts are within.
+        ((x + 0.95) / 1.9 * 9.0).floor()
+    };
+    let (mut areas, mut densities) = ([0.0; 9], [0.0; 9]);
+    for (index, [depth, coverage]) in picture.hair.iter().enumerate() {
+        let part = part_of(index % WIDTH);
+        if (0.0..9.0).contains(&part) {
+            let x = (index % WIDTH) as f64 + 0.5 - WIDTH as f64 / 2.0;
+            densities[part as usize] += 0.25 + 0.375 * (1.0 + x / f64::from(pixels_per_unit) + middle);
+            areas[part as usize] -= if *depth < 0.0 { 0.0 } else { (1.0 - f64::from(*coverage)).ln() };
+        }
+    }
+    let [covered, density]: [f64; 2] = [areas.iter().sum(), densities.iter().sum()];
+    for (part, (area, expected)) in areas.iter().zip(densities).enumerate() {
+        let error = area / covered / (expected / density) - 1.0;
+        println!("part {part}: {:+.2} %", 100.0 * error);
+        assert!(error.abs() < 0.03, "part {part}: {error}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use crate::change::Change;
@@ -113,6 +113,21 @@ impl Run {
         scenes
     }
 
+    /// The same with the scenes of a newer run in the place of what it knows of them; those that it does not know come last.
+    pub(crate) fn with(self, newer: Self) -> Result<Self> {
+        if self.setting != newer.setting {
+            bail!("the rows that stay were measured at another setting: {:?}", self.setting);
+        }
+        let of = |run: &Self, scene: &str| run.of_scene(scene).cloned().collect::<Vec<Row>>();
+        let known = self.scenes();
+        let added = newer.scenes().into_iter().filter(|scene| !known.contains(scene));
+        let rows = known.iter().copied().chain(added).flat_map(|scene| match of(&newer, scene) {
+            rows if rows.is_empty() => of(&self, scene),
+            rows => rows,
+        });
+        Ok(Self { rows: rows.collect(), ..self.clone() })
+    }
+
     pub(crate) fn of_scene<'a>(&'a self, scene: &'a str) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |row| row.scene == scene)
     }
@@ -184,6 +199,20 @@ pub(crate) mod tests {
         report.write(&path).unwrap();
         assert_eq!(Report::read(&path).unwrap(), report);
         std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn rows_of_scenes_that_were_not_measured_again_stay() {
+        let of = |scenes: &[(&str, f64)]| {
+            let row = |&(scene, flip): &(&str, f64)| Row { scene: scene.into(), ..row("tiles", flip, 0.5) };
+            let note = Some("some are older".into());
+            Run { setting: Extent::Full.setting(), rows: scenes.iter().map(row).collect(), changes: Vec::new(), note }
+        };
+        let stored = of(&[("a", 0.1), ("a", 0.2), ("b", 0.3), ("c", 0.4)]);
+        let merged = stored.clone().with(of(&[("d", 0.7), ("b", 0.5), ("b", 0.6)])).unwrap();
+        assert_eq!(merged, of(&[("a", 0.1), ("a", 0.2), ("b", 0.5), ("b", 0.6), ("c", 0.4), ("d", 0.7)]));
+        let small = Run { setting: Extent::Quick.setting(), ..of(&[("b", 0.5)]) };
+        assert!(stored.with(small).unwrap_err().to_string().contains("another setting"));
     }
 
     #[test]

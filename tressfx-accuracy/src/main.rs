@@ -35,6 +35,9 @@ struct Args {
     /// Judge shadows in place of techniques, at rest and in motion, by light that is traced
     #[arg(long, conflicts_with = "quick")]
     light: bool,
+    /// Measure this scene alone, and others that are named so; the rows of all others stay
+    #[arg(long = "scene", value_name = "NAME", conflicts_with_all = ["check", "light", "pages"])]
+    scenes: Vec<String>,
     /// What runs the passes
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
     device: Device,
@@ -97,10 +100,13 @@ fn main() -> Result<()> {
         return page::write(&run, extent, &args.docs);
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
-    let rows = measure.all(&scene::scenes(extent), &method::methods(extent), args.device.backends())?;
+    let scenes = scene::named(scene::scenes(extent), &args.scenes)?;
+    let rows = measure.all(&scenes, &method::methods(extent), args.device.backends())?;
     let mut run = Run { setting: extent.setting(), rows, changes: Vec::new(), note: None };
-    if let Some(stored) = stored.filter(|_| args.check) {
-        return check::check(&stored, &run);
+    match stored {
+        Some(stored) if args.check => return check::check(&stored, &run),
+        Some(stored) if !args.scenes.is_empty() => run = stored.with(run)?,
+        _ => {}
     }
     if extent == Extent::Light {
         run.changes = change::changes(&Program::new(&args.program)?, &args.work)?;

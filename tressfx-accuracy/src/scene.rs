@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use anyhow::{Result, bail};
+
 use crate::figures::Extent;
 
 /// How near the camera is: a share of the distance at which the sphere around the box of the groom fills the picture from top to
@@ -105,6 +107,15 @@ pub(crate) fn scenes(extent: Extent) -> Vec<Scene> {
     }
 }
 
+/// Those of some scenes that have one of these names; all where there is no name.
+pub(crate) fn named(scenes: Vec<Scene>, names: &[String]) -> Result<Vec<Scene>> {
+    if let Some(unknown) = names.iter().find(|&name| scenes.iter().all(|scene| scene.name != *name)) {
+        let known: Vec<_> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+        bail!("there is no scene {unknown}; there are {}", known.join(", "));
+    }
+    Ok(scenes.into_iter().filter(|scene| names.is_empty() || names.contains(&scene.name)).collect())
+}
+
 impl Scene {
     /// How `tressfx render` gets to the pose.
     pub(crate) fn motion(&self, frames: u32) -> Vec<String> {
@@ -146,6 +157,17 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
+    }
+
+    #[test]
+    fn scenes_are_found_by_name() {
+        let named = |names: &[&str]| {
+            named(scenes(Extent::Full), &names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>())
+        };
+        let names: Vec<_> = named(&["sintel-far", "curly-near"]).unwrap().into_iter().map(|scene| scene.name).collect();
+        assert_eq!(names, ["curly-near", "sintel-far"]);
+        assert_eq!(named(&[]).unwrap().len(), 3 * GROOMS.len());
+        assert!(named(&["curly"]).unwrap_err().to_string().contains("no scene curly; there are curly-near"));
     }
 
     #[test]

@@ -5,7 +5,7 @@ import package::grid::{GROUP, thread_index};
 @if(!fibre) import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
 @if(fibre) import package::scattering::{Fibre, fibres, scatter, under_sky};
-import package::section::{SectionUniform, drawn_vertex, strand_random};
+import package::section::{SectionUniform, shaded_vertex, strand_random};
 import package::view::{STORED_LIGHTS, ViewUniform, towards, towards_eye};
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -144,15 +144,15 @@ fn own_at(guide: u32, vertex: u32) -> vec4<f32> {
 fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
          @builtin(local_invocation_index) lane: u32) {
     let thread = thread_index(group, groups, lane);
-    if thread >= section.lod.strands * section.lod.vertices {
+    if thread >= section.shaded_strands * section.lod.vertices {
         return;
     }
-    let drawn = drawn_vertex(section.lod, thread, section.vertices);
-    let strand = drawn.x;
-    let i = drawn.y * section.strands + strand;
+    let shaded = shaded_vertex(section.lod, section.shaded_strands, thread, section.vertices);
+    let strand = shaded.x;
+    let i = shaded.y * section.strands + strand;
     let guide = strand % section.guides;
-    let place = place_of(strand, guide, drawn.y);
-    let own = own_at(guide, drawn.y);
+    let place = place_of(strand, guide, shaded.y);
+    let own = own_at(guide, shaded.y);
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));

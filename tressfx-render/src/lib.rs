@@ -43,6 +43,7 @@
 mod auto;
 mod bound;
 mod composite;
+mod copies;
 mod counters;
 mod draw_error;
 mod fibre;

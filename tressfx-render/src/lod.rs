@@ -160,7 +160,7 @@ impl LodDesc {
             return Lod::FULL;
         }
         let pixels = if lens.is_perspective { focal / distance } else { focal };
-        let all = draw.strands.buffers.shape.strands();
+        let all = draw.drawn_shape().strands();
         let least = (self.least as f32 / all.max(1) as f32).clamp(f32::MIN_POSITIVE, 1.0);
         let width = 2.0 * draw.strands.info.radius(draw.material) * pixels;
         let share = (width / self.width).clamp(least, 1.0);

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::copies::MAX_COPIES;
 use crate::fibre::FibreScattering;
 
 /// A highlight of a fibre.
@@ -27,6 +28,11 @@ pub struct Material {
     pub fibre_radius: Option<f32>,
     /// Width at the tip as a share of the width at the root.
     pub tip_width: f32,
+    /// Strands that are drawn for each one, itself among them, 1 to 32: thicker hair that costs neither simulation nor memory of its own. The radius that is fitted to a
+    /// groom is that of so many strands.
+    pub copies: u32,
+    /// How far copies are moved away from their strand at most, along each axis.
+    pub copy_spread: f32,
     /// Opacity of a fibre at the root.
     pub opacity: f32,
     /// Opacity of a fibre at the tip.
@@ -71,6 +77,8 @@ impl Default for Material {
         Self {
             fibre_radius: None,
             tip_width: 0.15,
+            copies: 1,
+            copy_spread: 0.001,
             opacity: 0.9,
             tip_opacity: 0.8,
             base_color: Vec3::new(0.105, 0.048, 0.024),
@@ -122,6 +130,8 @@ impl Material {
         let checks = [
             ("fibre_radius", self.fibre_radius.unwrap_or(0.01), 1e-6..=0.01),
             ("tip_width", self.tip_width, 0.0..=1.0),
+            ("copies", self.copies as f32, 1.0..=MAX_COPIES as f32),
+            ("copy_spread", self.copy_spread, 0.0..=0.1),
             ("opacity", self.opacity, 0.0..=1.0),
             ("tip_opacity", self.tip_opacity, 0.0..=1.0),
             ("base_color", color(self.base_color), 0.0..=1.0),

@@ -67,7 +67,7 @@ fn sum(view: &View, draws: &[SectionDraw], of: impl Fn(&Strip) -> f32) -> f64 {
     let of_section = |draw: &SectionDraw| {
         let info = &draw.strands.info;
         let to_eye = view.lens().to_eye * draw.pose.matrix();
-        let radius = info.radius(draw.material) * draw.lod.widening(draw.strands.buffers.shape);
+        let radius = info.radius(draw.material) * draw.lod.widening(draw.drawn_shape());
         let width = |share: f32| radius * (draw.material.tip_width + (1.0 - draw.material.tip_width) * share);
         // A root and a tip a strand.
         let lod = draw.lod_uniform();

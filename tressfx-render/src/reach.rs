@@ -18,6 +18,9 @@ const MARGIN: f64 = 4.0;
 /// Sky is taken by hair that is nearer than so many times the radii of both: beyond that it hides less than 2 % of it.
 const SKY: f64 = 2.0;
 
+/// Of the square of a distance.
+const ROUNDING: f64 = 1e-12;
+
 /// What a frame has drawn and left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -57,8 +60,8 @@ struct Ball {
 impl Ball {
     fn of(draw: &SectionDraw) -> Self {
         let (strands, center) = (draw.strands, draw.pose.translation.as_dvec3());
-        let fibre = strands.radius(draw.material) * draw.lod.widening(strands.buffers.shape);
-        Self { center, radius: f64::from(strands.reach) + f64::from(fibre) }
+        let fibre = strands.radius(draw.material) * draw.lod.widening(draw.drawn_shape());
+        Self { center, radius: f64::from(strands.reach) + f64::from(fibre) + f64::from(draw.farthest_copy()) }
     }
 
     /// One that holds all of these, if there are any.
@@ -78,14 +81,15 @@ impl Ball {
     fn shades(&self, other: &Self, light: &Casting) -> bool {
         let apart = self.center - other.center;
         let radii = self.radius + other.radius;
-        let is_near = |at: DVec3| apart.distance_squared(at) <= radii * radii;
-        light.has_sky && apart.length_squared() <= (SKY * radii).powi(2)
+        let (square, most) = (apart.length_squared(), radii * radii);
+        light.has_sky && square <= SKY * SKY * most
             || light.from.iter().any(|from| match from {
-                From::Afar(towards) => is_near(towards * apart.dot(*towards).max(0.0)),
+                // The distance from the way of the light, and what rounding may make of it.
+                From::Afar(towards) => square - apart.dot(*towards).max(0.0).powi(2) <= most + square * ROUNDING,
                 From::Point(position) => {
                     let way = position - other.center;
                     let along = apart.dot(way) / way.length_squared().max(1e-30);
-                    is_near(way * along.clamp(0.0, 1.0))
+                    apart.distance_squared(way * along.clamp(0.0, 1.0)) <= most
                 }
             })
     }

@@ -29,6 +29,7 @@ mod velocity;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use crate::copies::moved_aside;
 use crate::lights::STORED_LIGHTS;
 use crate::uniforms::SectionUniform;
 
@@ -92,9 +93,30 @@ impl Strands<'_> {
         (vertex * self.uniform.lod.step).min(self.uniform.vertices - 1)
     }
 
-    /// Of a drawn vertex.
+    /// Of a drawn vertex. A copy has that of its strand.
     fn index(&self, strand: u32, vertex: u32) -> usize {
-        (self.full_vertex(vertex) * self.uniform.strands + strand) as usize
+        (self.full_vertex(vertex) * self.uniform.strands + strand % self.uniform.strands) as usize
+    }
+
+    /// The number of a drawn vertex, in the order of the positions, where there are no copies; among more strands where there are.
+    fn number(&self, strand: u32, vertex: u32) -> u32 {
+        self.full_vertex(vertex) * self.numbered_strands() + strand
+    }
+
+    fn numbered_strands(&self) -> u32 {
+        self.uniform.strands.max(self.uniform.lod.strands)
+    }
+
+    /// Where a strand or a copy has a vertex of the whole strand, in the world.
+    fn point_of(&self, strand: u32, full_vertex: u32) -> DVec3 {
+        let of = &self.uniform;
+        let local = xyz(&self.positions[(full_vertex * of.strands + strand % of.strands) as usize]);
+        matrix(&of.pose).transform_point3(local + moved_aside(of.strands, strand, of.copy_spread))
+    }
+
+    /// The same of a drawn vertex.
+    fn point(&self, strand: u32, vertex: u32) -> DVec3 {
+        self.point_of(strand, self.full_vertex(vertex))
     }
 
     /// Whether anything is drawn from a drawn vertex.
@@ -127,7 +149,7 @@ impl Strands<'_> {
         f64::from(of.fibre_radius) * (tip + (1.0 - tip) * share)
     }
 
-    /// The position of a vertex in the world: transformed by the pose of the section.
+    /// The position of a vertex of the buffers in the world: transformed by the pose of the section.
     pub fn posed(&self, index: usize) -> DVec3 {
         matrix(&self.uniform.pose).transform_point3(xyz(&self.positions[index]))
     }

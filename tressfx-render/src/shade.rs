@@ -118,7 +118,7 @@ impl Shade {
             resources.extend(own_colors.map(|colors| ("own_colors", colors.into())));
             kernel.bind(&resources)
         })?;
-        list.compute(kernel, &bindings, Grid::for_threads(draw.vertices(), GROUP));
+        list.compute(kernel, &bindings, Grid::for_threads(draw.shaded_vertices(), GROUP));
         Ok(())
     }
 }

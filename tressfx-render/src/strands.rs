@@ -10,6 +10,7 @@ use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
+use crate::copies::{drawn_shape, moved_aside};
 use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
@@ -82,9 +83,10 @@ impl StrandInfo {
         }
     }
 
-    /// Radius of a fibre in the unit of the positions.
+    /// Radius of a fibre in the unit of the positions. One that is fitted falls with the number of copies.
     pub(crate) fn radius(&self, material: &Material) -> f32 {
-        material.fibre_radius.unwrap_or(self.fitting_radius) / self.metres_per_unit
+        let fitting = || (self.fitting_radius / material.copies.max(1) as f32).max(MIN_FITTING_RADIUS as f32);
+        material.fibre_radius.unwrap_or_else(fitting) / self.metres_per_unit
     }
 }
 
@@ -319,11 +321,47 @@ impl<'a> SectionDraw<'a> {
         Self { lod, ..self }
     }
 
-    pub(crate) fn lod_uniform(&self) -> LodUniform {
-        self.lod.uniform(self.strands.buffers.shape)
+    /// The counts of what there is to draw: those of the buffers, with copies ([`Material::copies`]) as more follow strands.
+    pub fn drawn_shape(&self) -> StrandShape {
+        drawn_shape(self.strands.buffers.shape, self.material.copies)
     }
 
-    /// Vertices that are shaded and drawn.
+    /// What strands and copies have of something that the buffers have for each vertex of a strand, in the order of [`SectionDraw::drawn_shape`]: for tools.
+    pub fn copied<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        let row = self.strands.buffers.shape.strands().max(1) as usize;
+        values.chunks(row).flat_map(|row| row.repeat(self.material.copies as usize)).collect()
+    }
+
+    /// The same for positions: where the vertices of copies are.
+    pub fn copied_positions(&self, positions: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let (row, uniform) = (self.drawn_shape().strands().max(1) as usize, self.uniform());
+        let aside = |place: usize| moved_aside(uniform.strands, (place % row) as u32, uniform.copy_spread).as_vec3();
+        let moved = |(place, [x, y, z, w]): (usize, [f32; 4])| (Vec3::new(x, y, z) + aside(place)).extend(w).to_array();
+        self.copied(positions).into_iter().enumerate().map(moved).collect()
+    }
+
+    /// How far a copy may be from its strand, in the unit of the positions.
+    pub(crate) fn farthest_copy(&self) -> f32 {
+        let has_any = self.material.copies > 1;
+        if has_any { 3.0_f32.sqrt() * self.material.copy_spread / self.strands.info.metres_per_unit } else { 0.0 }
+    }
+
+    pub(crate) fn lod_uniform(&self) -> LodUniform {
+        self.lod.uniform(self.drawn_shape())
+    }
+
+    /// Strands that are counted for shadows.
+    pub(crate) fn shadow_strands(&self) -> u32 {
+        self.lod.shadow_strands(self.drawn_shape())
+    }
+
+    /// Vertices that are shaded: copies have the colours of their strands.
+    pub(crate) fn shaded_vertices(&self) -> u32 {
+        let lod = self.lod_uniform();
+        lod.strands.min(self.strands.buffers.shape.strands()) * lod.vertices
+    }
+
+    /// Vertices that are drawn.
     pub fn vertices(&self) -> u32 {
         let lod = self.lod_uniform();
         lod.strands * lod.vertices
@@ -337,7 +375,7 @@ impl<'a> SectionDraw<'a> {
 
     /// Strands that a frame reads, the first ones: those that are drawn and those that shadows count. For strands that are made each frame.
     pub fn needed_strands(&self) -> u32 {
-        self.lod_uniform().strands.max(self.lod.shadow_strands(self.strands.buffers.shape))
+        self.lod_uniform().strands.max(self.shadow_strands()).min(self.strands.buffers.shape.strands())
     }
 
     /// What the shaders are given.

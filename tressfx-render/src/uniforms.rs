@@ -5,6 +5,7 @@ use tressfx_core::gpu_struct;
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::view::{Pose, View};
 
+use crate::copies::drawn_shape;
 use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::material::Material;
@@ -154,6 +155,12 @@ gpu_struct! {
         pub hue_variation: f32,
         /// How much of the colours that strands bring along is seen.
         pub own_colors: f32,
+        /// Strands that are shaded: copies have the colours of theirs.
+        pub shaded_strands: u32,
+        /// How far copies are moved along each axis at most, in the unit of the positions.
+        pub copy_spread: f32,
+        /// Nothing.
+        pub unused: [u32; 2],
     }
 }
 
@@ -226,8 +233,10 @@ impl SectionUniform {
         let ([base_color, tip_color], [absorption, tip_absorption]) = (material.colors(), material.absorptions());
         let roughness = material.fibre.map_or(0.0, |fibre| fibre.roughness);
         let matrix: Mat4 = pose.matrix();
+        let drawn = drawn_shape(shape, material.copies);
+        let of_lod = lod.uniform(drawn);
         // The mean of several strands differs less from that of others.
-        let apart = lod.widening(shape).sqrt();
+        let apart = lod.widening(drawn).sqrt();
         Self {
             pose: matrix.to_cols_array_2d(),
             base: with(base_color, material.opacity),
@@ -235,8 +244,8 @@ impl SectionUniform {
             strands: shape.strands(),
             guides: shape.guides,
             vertices: shape.vertices,
-            fibre_radius: info.radius(material) * lod.widening(shape),
-            lod: lod.uniform(shape),
+            fibre_radius: info.radius(material) * lod.widening(drawn),
+            lod: of_lod,
             tip_width: material.tip_width,
             diffuse: material.diffuse,
             variation: material.variation / apart,
@@ -250,13 +259,16 @@ impl SectionUniform {
             shadow_alpha: material.shadow_alpha,
             variance: variances(f64::from(roughness))[0] as f32,
             multiple: material.fibre.map_or(0.0, |fibre| fibre.multiple),
-            shadow_strands: lod.shadow_strands(shape),
+            shadow_strands: lod.shadow_strands(drawn),
             absorption: with(absorption, material.pigmentation()),
             tip_absorption: with(tip_absorption, 0.0),
             tip_start: material.tip_start,
             tip_scale: 1.0 / (1.0 - material.tip_start).max(1e-6),
             hue_variation: material.hue_variation / apart,
             own_colors: 0.0,
+            shaded_strands: of_lod.strands.min(shape.strands()),
+            copy_spread: material.copy_spread / info.metres_per_unit,
+            unused: [0; 2],
         }
     }
 

@@ -38,6 +38,8 @@ pub struct Clock {
     pose: Pose,
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
+    /// Where the head stands still and frames have passed: the lengths of the last two, s, which `before` has not been told yet.
+    still: Option<[f64; 2]>,
 }
 
 /// Frames whose lengths differ by more than this factor do not count as one motion, see [`Clock::path`].
@@ -66,6 +68,7 @@ impl Clock {
             simulated_head: Pose::IDENTITY,
             pose: drawn(center, &Pose::IDENTITY, &Pose::IDENTITY),
             velocities: None,
+            still: None,
         })
     }
 
@@ -109,6 +112,7 @@ impl Clock {
     /// Divides a frame of `dt` seconds, at whose end the head is at `head`, into sub-steps. Within the frame the head
     /// continues its motion of the last two frames.
     pub fn advance(&mut self, dt: f64, head: Pose) -> FramePlan {
+        self.settle();
         let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
         let start = if teleported { None } else { self.head };
         let mut frame = FramePlan { teleported, ..FramePlan::default() };
@@ -166,18 +170,35 @@ impl Clock {
         let count = self.count(dt - dropped);
         // As often as there are sub-steps: a product would be rounded in another way.
         (0..count).for_each(|_| self.time += length);
+        self.behind += dt - dropped - f64::from(count) * length;
         if count > 0 {
             self.last_sub_step = length;
-            if self.simulated_head != head {
-                self.simulated_head = head;
-                self.pose = drawn(self.center, &head, &head);
-            }
         }
-        self.behind += dt - dropped - f64::from(count) * length;
+        if let Some([last, _]) = self.still.filter(|_| dt > 0.0 && dropped == 0.0) {
+            self.still = Some([dt, last]);
+            return;
+        }
+        self.settle();
+        if count > 0 && self.simulated_head != head {
+            self.simulated_head = head;
+            self.pose = drawn(self.center, &head, &head);
+        }
         if dt > 0.0 {
             self.velocities = Some([Vec3::ZERO; 8]);
         }
         self.before = if dropped == 0.0 { [Some((head, dt)), self.before[0]] } else { [None; 2] };
+        let at_head = |frame: Option<(Pose, f64)>| frame.filter(|(pose, _)| *pose == head).map(|(_, length)| length);
+        self.still = match self.before.map(at_head) {
+            [Some(last), Some(earlier)] if dt > 0.0 && self.simulated_head == head => Some([last, earlier]),
+            _ => None,
+        };
+    }
+
+    /// Writes down what has passed.
+    fn settle(&mut self) {
+        if let (Some(lengths), Some(head)) = (self.still.take(), self.head) {
+            self.before = lengths.map(|length| Some((head, length)));
+        }
     }
 
     /// Sub-steps in so many more seconds.

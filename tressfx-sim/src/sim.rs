@@ -1,5 +1,7 @@
 //! The simulation of a groom.
 
+mod sleeping;
+
 use glam::{Quat, Vec3};
 use tressfx_core::backend::{Backend, Owner};
 use tressfx_core::id::BufferId;
@@ -19,7 +21,7 @@ use crate::params::SimParams;
 use crate::rods::{GpuRods, Standing};
 use crate::section::{Shared, SimSection};
 use crate::section_desc::SectionDesc;
-use crate::sleep::{Measure, MotionTicket, Sleep, SleepParams};
+use crate::sleep::Sleep;
 use crate::solver::Solver;
 use crate::stage::Stage;
 use crate::step::Step;
@@ -162,13 +164,17 @@ impl HairSim {
     /// # Errors
     /// Something in the input that is not finite or out of range, or too many colliders; nothing is recorded then.
     pub fn step(&mut self, list: &mut PassList, input: &StepInput) -> Result<StepReport, SimError> {
-        input.validate()?;
-        let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
-        if input.colliders.len() > most {
-            return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
+        // What is given again was in order before.
+        if !self.sleeps_on_in(input) {
+            input.validate()?;
+            let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
+            if input.colliders.len() > most {
+                return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
+            }
+            self.check_fields(input)?;
+            self.note(input);
         }
-        self.check_fields(input)?;
-        if self.sleeps_on(input) {
+        if self.is_asleep() {
             self.clock.pass(input.dt);
             return Ok(StepReport { asleep: true, ..StepReport::default() });
         }
@@ -194,60 +200,6 @@ impl HairSim {
         Ok(report)
     }
 
-    /// Lets the groom sleep from now on: once it has come to rest, and as long as the head stands still, colliders, roots and parameters stay the
-    /// same and no wind blows, [`HairSim::step`] records nothing. What changes wakes it in that same frame, and time has gone on. Its strands stay where they
-    /// were measured to be at rest, so that it moves on as one that has never slept but for what that one has moved in the meantime, at less than
-    /// [`SleepParams::speed`]. A groom that is not measured ([`HairSim::request_motion`]) never sleeps.
-    ///
-    /// It takes 16 bytes a guide vertex.
-    ///
-    /// # Errors
-    /// A parameter outside its range, or what the backend says; nothing changes then.
-    pub fn allow_sleep(&mut self, backend: &mut dyn Backend, params: SleepParams) -> Result<(), SimError> {
-        params.validate()?;
-        if let Some(sleep) = &mut self.sleep {
-            sleep.params = params;
-            sleep.wake();
-            return Ok(());
-        }
-        let Self { sections, kernels, shared, owner, .. } = self;
-        let mut compiled = kernels.clone();
-        let measure = owner.change(backend, |backend| {
-            let largest = storage(backend, "hair.moved", 4, 1)?;
-            let mut passes = Vec::with_capacity(sections.len());
-            for section in sections.iter() {
-                passes.push(section.measure(backend, &mut compiled, shared, largest)?);
-            }
-            Ok::<_, tressfx_core::Error>(Measure { passes, largest })
-        })?;
-        *kernels = compiled;
-        self.sleep = Some(Sleep::new(params, measure));
-        Ok(())
-    }
-
-    /// Measures how far strands move, behind [`HairSim::step`] of this frame; every 10 frames or so is often enough. When the bytes have come back, some
-    /// frames later, [`HairSim::measured_motion`] takes them. Nothing is recorded and none comes back of a groom that sleeps, or that may not, or where no time has passed;
-    /// the first measurement after something has changed notes where strands are, and none comes back either.
-    pub fn request_motion(&mut self, list: &mut PassList) -> Option<MotionTicket> {
-        let time = self.clock.time();
-        self.sleep.as_mut()?.request(list, time)
-    }
-
-    /// Takes what [`HairSim::request_motion`] has asked for: four bytes. One from before the last change is not looked at.
-    pub fn measured_motion(&mut self, ticket: &MotionTicket, bytes: [u8; 4]) {
-        self.sleep.iter_mut().for_each(|sleep| sleep.take(ticket, f32::from_le_bytes(bytes)));
-    }
-
-    /// Whether it sleeps.
-    pub fn is_asleep(&self) -> bool {
-        self.sleep.as_ref().is_some_and(Sleep::is_asleep)
-    }
-
-    /// Wakes it for the next frame: for what it cannot know, such as [`HairSim::root_transforms`] that a kernel has written.
-    pub fn wake(&mut self) {
-        self.sleep.iter_mut().for_each(Sleep::wake);
-    }
-
     fn check_fields(&self, input: &StepInput) -> Result<(), SimError> {
         let count = self.field_count;
         for (index, collider) in input.colliders.iter().enumerate() {
@@ -259,12 +211,6 @@ impl HairSim {
             }
         }
         Ok(())
-    }
-
-    /// Whether it sleeps in a frame.
-    fn sleeps_on(&mut self, input: &StepInput) -> bool {
-        self.sleep.iter_mut().for_each(|sleep| sleep.note(input));
-        self.is_asleep()
     }
 
     /// Says where the roots of a section are at the end of the next frame: a pose a guide, within the space of the rest pose;

@@ -127,6 +127,13 @@ impl Sleep {
         self.epoch += 1;
     }
 
+    /// Whether it is asleep in a frame that gives what was given before, and no wind.
+    pub(crate) fn goes_on_in(&self, input: &StepInput) -> bool {
+        let is_given_again =
+            |surroundings: &Surroundings| input.wind.is_none() && input.dt.is_finite() && surroundings.go_on_in(input);
+        self.is_asleep() && self.surroundings.as_ref().is_some_and(is_given_again)
+    }
+
     /// Takes note of what a frame is given. Wakes where that is something new.
     pub(crate) fn note(&mut self, input: &StepInput) {
         if !self.surroundings.as_ref().is_some_and(|surroundings| surroundings.go_on_in(input)) {

@@ -116,15 +116,20 @@ fn strands(run: &mut Run, studio: &Studio, tickets: &Tickets) -> Result<Vec<Stra
 
 fn truth(run: &Run, studio: &Studio, strands: &[Strands], depth: &[f32]) -> Result<Truth> {
     let pose = run.sim.pose();
-    let sections = studio.buffers(run).into_iter().zip(&studio.sections).zip(strands);
+    let draws: Vec<_> =
+        studio.sections.iter().map(|(shaded, material)| SectionDraw::new(shaded, material, pose)).collect();
+    let copied = draws.iter().zip(strands);
+    let copied: Vec<_> =
+        copied.map(|(draw, of)| (draw.copied_positions(&of.positions), draw.copied(&of.colors))).collect();
+    let sections = draws.iter().zip(strands).zip(&copied);
     let sections: Vec<_> = sections
-        .map(|((buffers, (shaded, material)), strands)| {
-            let uniform = SectionDraw::new(shaded, material, pose).uniform();
+        .map(|((draw, strands), (positions, colors))| {
+            let uniform = draw.uniform();
             Section {
-                shape: buffers.shape,
+                shape: draw.drawn_shape(),
                 pose,
-                positions: &strands.positions,
-                colors: &strands.colors,
+                positions,
+                colors,
                 thickness: &strands.thickness,
                 fibre_radius: uniform.fibre_radius,
                 tip_width: uniform.tip_width,

@@ -4,7 +4,7 @@ use anyhow::Result;
 use glam::Vec3;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::Pose;
-use tressfx_render::{LightPlace, Lights};
+use tressfx_render::{LightPlace, Lights, SectionDraw};
 use tressfx_truth::{Illumination, Light, LitSection, OpaqueMesh, ShadowMethod, Truth};
 
 use crate::picture::texels;
@@ -61,8 +61,16 @@ fn colors(run: &mut Run, studio: &mut Studio, lights: &Lights) -> Result<Vec<Vec
     studio.draw_unshaded(&mut list, lights, run.sim.pose())?;
     let tickets = request_colors(&mut list, run, studio);
     run.backend.run(&list)?;
-    let section = |ticket| Ok(texels(&run.fetch(ticket)?).map(|color| color.truncate().to_array()).collect());
-    tickets.into_iter().map(section).collect()
+    let pose = run.sim.pose();
+    let section = |(ticket, (strands, material))| {
+        let colors: Vec<_> = texels(&run.fetch(ticket)?).map(|color| color.truncate().to_array()).collect();
+        Ok(SectionDraw::new(strands, material, pose).copied(&colors))
+    };
+    tickets
+        .into_iter()
+        .zip(studio.sections.iter().map(|(strands, material)| (strands, material)))
+        .map(section)
+        .collect()
 }
 
 /// From where a light comes, for its shadows.

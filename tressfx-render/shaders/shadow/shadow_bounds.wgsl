@@ -3,7 +3,7 @@
 import package::frames::{ShadowUniform, in_frame, order_of};
 import package::grid::{GROUP, thread_index};
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, stepped};
+import package::section::{SectionUniform, moved_aside, source_of, stepped};
 
 @group(0) @binding(0) var<uniform> shadow: ShadowUniform;
 @group(0) @binding(1) var<uniform> section: SectionUniform;
@@ -38,13 +38,15 @@ fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroup
     if first >= end {
         return;
     }
+    let source = source_of(section.strands, strand);
+    let aside = moved_aside(section.strands, section.copy_spread, strand);
     for (var frame = shadow.first; frame < shadow.end; frame++) {
         var low = vec3(3e38);
         var high = vec3(-3e38);
         for (var vertex = first; vertex < end; vertex++) {
-            let local = positions[stepped(section.lod, vertex, section.vertices) * section.strands + strand].xyz;
+            let local = positions[stepped(section.lod, vertex, section.vertices) * section.strands + source].xyz;
             if is_sound(local) {
-                let at = in_frame(shadow.frames[frame], (section.pose * vec4(local, 1.0)).xyz);
+                let at = in_frame(shadow.frames[frame], (section.pose * vec4(local + aside, 1.0)).xyz);
                 low = min(low, at);
                 high = max(high, at);
             }

@@ -2,7 +2,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::ribbon::{is_sound, on_screen, scale_at};
-import package::section::{SectionUniform, drawn_vertex};
+import package::section::{SectionUniform, shaded_vertex};
 import package::view::LensUniform;
 
 struct OpaqueUniform {
@@ -65,11 +65,11 @@ fn share_at(point: vec3<f32>) -> f32 {
 fn shadow_opaque(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                  @builtin(local_invocation_index) lane: u32) {
     let thread = thread_index(group, groups, lane);
-    if thread >= section.lod.strands * section.lod.vertices {
+    if thread >= section.shaded_strands * section.lod.vertices {
         return;
     }
-    let drawn = drawn_vertex(section.lod, thread, section.vertices);
-    let i = drawn.y * section.strands + drawn.x;
+    let shaded = shaded_vertex(section.lod, section.shaded_strands, thread, section.vertices);
+    let i = shaded.y * section.strands + shaded.x;
     if !is_sound(positions[i].xyz) {
         return;
     }

@@ -6,7 +6,7 @@ import package::grid::{GROUP, thread_index};
 import package::grids::{grid_of, shadow};
 import package::hash::hash;
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, stepped, strands_of};
+import package::section::{SectionUniform, moved_aside, source_of, stepped, strands_of};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
@@ -27,8 +27,9 @@ const MEAN_SINE: f32 = 0.785398163;
 const MAX_SKIN: f32 = 3.0;
 
 fn posed(strand: u32, vertex: u32) -> vec4<f32> {
-    let local = positions[vertex * section.strands + strand].xyz;
-    return vec4((section.pose * vec4(local, 1.0)).xyz, select(0.0, 1.0, is_sound(local)));
+    let local = positions[vertex * section.strands + source_of(section.strands, strand)].xyz;
+    let moved = local + moved_aside(section.strands, section.copy_spread, strand);
+    return vec4((section.pose * vec4(moved, 1.0)).xyz, select(0.0, 1.0, is_sound(local)));
 }
 
 fn width_at(strand: u32, vertex: u32) -> f32 {

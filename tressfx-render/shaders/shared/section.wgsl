@@ -52,6 +52,11 @@ struct SectionUniform {
     hue_variation: f32,
     // How much of the colours that strands bring along is seen.
     own_colors: f32,
+    // Strands that are shaded: copies have the colours of theirs.
+    shaded_strands: u32,
+    // How far copies are moved along each axis at most, in the unit of the positions.
+    copy_spread: f32,
+    unused: vec2<u32>,
 }
 
 // The vertex of the whole strand, which has so many, that a drawn one is.
@@ -59,9 +64,26 @@ fn stepped(lod: LodUniform, vertex: u32, vertices: u32) -> u32 {
     return min(vertex * lod.step, vertices - 1u);
 }
 
-// Strand and vertex of thread `i`, of those that draw a section; `vertices` are those of the whole strand.
-fn drawn_vertex(lod: LodUniform, i: u32, vertices: u32) -> vec2<u32> {
-    return vec2(i % lod.strands, stepped(lod, i / lod.strands, vertices));
+// Strand and vertex of thread `i`, of those that shade so many strands; `vertices` are those of the whole strand.
+fn shaded_vertex(lod: LodUniform, strands: u32, i: u32, vertices: u32) -> vec2<u32> {
+    return vec2(i % strands, stepped(lod, i / strands, vertices));
+}
+
+// The strand of the buffers, which have so many, that a strand or a copy is: copies are numbered behind all strands, in their order.
+fn source_of(strands: u32, strand: u32) -> u32 {
+    if strand < strands {
+        return strand;
+    }
+    return strand % strands;
+}
+
+// How far a copy is moved away from its strand: to somewhere in a cube, all vertices alike.
+fn moved_aside(strands: u32, spread: f32, strand: u32) -> vec3<f32> {
+    if strand < strands {
+        return vec3(0.0);
+    }
+    let seed = 3u * strand;
+    return spread * (2.0 * vec3(hash(seed), hash(seed + 1u), hash(seed + 2u)) - 1.0);
 }
 
 // How many strands have the width of all.

@@ -5,7 +5,7 @@ import package::joint::{ROUND, rise_along, tilt_of};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, on_screen, project, scale_at};
 import package::screen::view;
-import package::section::{SectionUniform, faded, stepped};
+import package::section::{SectionUniform, faded, moved_aside, source_of, stepped};
 
 @group(0) @binding(1) var<uniform> section: SectionUniform;
 @group(0) @binding(2) var<storage, read> positions: array<vec4<f32>>;
@@ -17,13 +17,23 @@ fn full_vertex(vertex: u32) -> u32 {
     return stepped(section.lod, vertex, section.vertices);
 }
 
+// Where a vertex of a strand or of a copy is in the buffers.
+fn vertex_of(strand: u32, vertex: u32) -> u32 {
+    return full_vertex(vertex) * section.strands + source_of(section.strands, strand);
+}
+
+fn aside_of(strand: u32) -> vec3<f32> {
+    return moved_aside(section.strands, section.copy_spread, strand);
+}
+
 fn is_sound_at(strand: u32, vertex: u32) -> bool {
-    return is_sound(positions[full_vertex(vertex) * section.strands + strand].xyz);
+    return is_sound(positions[vertex_of(strand, vertex)].xyz);
 }
 
 // A vertex in the space of the eye.
 fn point_at(strand: u32, vertex: u32) -> vec3<f32> {
-    let world = section.pose * vec4(positions[full_vertex(vertex) * section.strands + strand].xyz, 1.0);
+    let local = positions[vertex_of(strand, vertex)].xyz + aside_of(strand);
+    let world = section.pose * vec4(local, 1.0);
     return (view.lens.to_eye * world).xyz;
 }
 
@@ -57,7 +67,7 @@ fn tilt_between(bend: Bend) -> f32 {
 }
 
 fn shaded_at(strand: u32, vertex: u32) -> vec4<f32> {
-    let color = colors[full_vertex(vertex) * section.strands + strand];
+    let color = colors[vertex_of(strand, vertex)];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
 }
 

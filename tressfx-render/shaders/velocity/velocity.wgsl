@@ -6,7 +6,7 @@ import package::line::{line_of, place_of};
 import package::motion::MotionUniform;
 import package::ribbon::{along, is_sound};
 import package::screen::view;
-import package::strands::{full_vertex, positions, ribbon_of, section};
+import package::strands::{aside_of, positions, ribbon_of, section, vertex_of};
 
 @group(0) @binding(6) var<storage, read> past_positions: array<vec4<f32>>;
 // The numbers of segments, from 1; 0 is no hair.
@@ -41,9 +41,10 @@ fn velocity(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let vertex = segment / section.lod.strands;
     let ribbon = ribbon_of(strand, vertex);
     let share = along(ribbon, max(place_of(ribbon, line_of(ribbon), pixel), 0.0));
-    let start = full_vertex(vertex) * section.strands + strand;
-    let end = full_vertex(vertex + 1u) * section.strands + strand;
-    let now = array(positions[start].xyz, positions[end].xyz);
-    let past = array(past_positions[start].xyz, past_positions[end].xyz);
+    let start = vertex_of(strand, vertex);
+    let end = vertex_of(strand, vertex + 1u);
+    let aside = aside_of(strand);
+    let now = array(positions[start].xyz + aside, positions[end].xyz + aside);
+    let past = array(past_positions[start].xyz + aside, past_positions[end].xyz + aside);
     return vec4(moved(now, past, share), 0.0, 0.0);
 }

@@ -12,7 +12,7 @@ use super::ribbon::Ribbon;
 pub struct Fragment {
     /// Column and row.
     pub pixel: [u32; 2],
-    /// The first vertex of its segment, a number in the order of the positions.
+    /// The first vertex of its segment: a number in the order of the positions, as if copies had their own.
     pub segment: u32,
     /// Its depth, turned so that more is nearer, and 0 at the far end of the range.
     pub nearness: f64,

@@ -27,8 +27,7 @@ impl Joint {
         let (Some(before), Some(after)) = (strands.before(strand, vertex), strands.after(strand, vertex)) else {
             return Self::Round;
         };
-        let points =
-            [before, vertex, after].map(|vertex| projection.point(strands.posed(strands.index(strand, vertex))));
+        let points = [before, vertex, after].map(|vertex| projection.point(strands.point(strand, vertex)));
         if points.iter().any(|point| projection.behind_near(point) <= 0.0) {
             return Self::AHEAD;
         }
@@ -63,7 +62,7 @@ impl Joint {
 
 /// Colour and opacity of the surface that is seen at a vertex: those of the axis where the surface is as high as in the mean.
 pub(super) fn paint(projection: &Projection, strands: &Strands, colors: &[DVec4], strand: u32, vertex: u32) -> DVec4 {
-    let place = |vertex: u32| strands.posed(strands.index(strand, vertex));
+    let place = |vertex: u32| strands.point(strand, vertex);
     let before = strands.before(strand, vertex).unwrap_or(vertex);
     let after = strands.after(strand, vertex).unwrap_or(vertex);
     let point = place(vertex);

@@ -42,10 +42,9 @@ impl Ribbon {
         if !vertices.iter().all(|&vertex| strands.is_sound(strand, vertex)) {
             return None;
         }
-        let indices = vertices.map(|vertex| strands.index(strand, vertex));
         let radii = vertices.map(|vertex| strands.radius(strand, vertex));
         let paints = vertices.map(|vertex| paint(projection, strands, colors, strand, vertex));
-        let whole = indices.map(|i| projection.point(strands.posed(i)));
+        let whole = vertices.map(|vertex| projection.point(strands.point(strand, vertex)));
         let parts = projection.visible(&whole)?;
         let points: [Point; 2] = parts.map(|t| projection.point(whole[0].world.lerp(whole[1].world, t)));
         let at = [projection.pixel(&points[0]), projection.pixel(&points[1])];
@@ -69,7 +68,7 @@ impl Ribbon {
             color: paints[0].lerp(paints[1], parts[end]),
             joint: joints[end],
         };
-        Some(Self { first_vertex: indices[0] as u32, ends: [corner(0), corner(1)], delta, normal })
+        Some(Self { first_vertex: strands.number(strand, vertex), ends: [corner(0), corner(1)], delta, normal })
     }
 
     pub(super) fn walk(

@@ -12,7 +12,7 @@ pub fn shadow_bounds(shadow: &ShadowUniform, index: usize, sections: &[Strands])
         let pairs = (0..samples(shadow, strands))
             .flat_map(|strand| (0..strands.uniform.lod.vertices).map(move |v| (strand, v)));
         let sound = pairs.filter(|&(strand, vertex)| strands.is_sound(strand, vertex));
-        sound.map(|(strand, vertex)| in_frame(&shadow.frames[index], strands.posed(strands.index(strand, vertex))))
+        sound.map(|(strand, vertex)| in_frame(&shadow.frames[index], strands.point(strand, vertex)))
     });
     vertices.fold(None, |bounds, at| {
         let [low, high] = bounds.unwrap_or([at; 2]);

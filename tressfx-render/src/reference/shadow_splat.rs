@@ -35,7 +35,7 @@ pub fn shadow_splat(shadow: &ShadowUniform, index: usize, bounds: [DVec3; 2], se
 fn segment(made: &mut ShadowCells, shadow: &ShadowUniform, strands: &Strands, strand: u32, vertex: u32) {
     let frame = &shadow.frames[made.index];
     let of = &strands.uniform;
-    let ends = [vertex, vertex + 1].map(|vertex| in_frame(frame, strands.posed(strands.index(strand, vertex))));
+    let ends = [vertex, vertex + 1].map(|vertex| in_frame(frame, strands.point(strand, vertex)));
     let width = strands.full_radius(strand, vertex) + strands.full_radius(strand, vertex + 1);
     let stands_for = (f64::from(of.lod.strands - 1) + f64::from(of.lod.fade)) / f64::from(samples(shadow, strands));
     let taken = f64::from(of.shadow_alpha) * width * stands_for / shrinks_by(frame, 0.5 * (ends[0] + ends[1]));
@@ -53,7 +53,7 @@ fn segment(made: &mut ShadowCells, shadow: &ShadowUniform, strands: &Strands, st
 
 fn skin(made: &mut ShadowCells, shadow: &ShadowUniform, strands: &Strands, strand: u32, roots: f64) {
     let frame = &shadow.frames[made.index];
-    let [root, next] = [0, 1].map(|vertex| strands.posed(strands.index(strand, vertex)));
+    let [root, next] = [0, 1].map(|vertex| strands.point(strand, vertex));
     let growth = (next - root).normalize_or_zero();
     let across = shrinks_by(frame, in_frame(frame, root));
     let unit = DVec3::new(across, across, 1.0) * made.grid.cell;

@@ -6,15 +6,14 @@ use tressfx_core::view::View;
 use super::Strands;
 
 /// How far, in pixels to the right and down, a pixel's point of a segment has moved on the screen since the frame before, without jitter; 0 where it
-/// was not before the eye. `segment` is its first vertex, a number in the order of the positions; `past` are the same strands in the frame before.
+/// was not before the eye. `segment` is its first vertex, see [`Fragment::segment`](super::Fragment::segment); `past` are the same strands in the frame before.
 ///
 /// The segment is before the near plane.
 pub fn velocity(view: &View, strands: &Strands, past: &Strands, segment: u32, pixel: [u32; 2]) -> DVec2 {
-    let (first, strand) = (segment / strands.uniform.strands, segment % strands.uniform.strands);
+    let (first, strand) = (segment / strands.numbered_strands(), segment % strands.numbered_strands());
     let last = (first + strands.uniform.lod.step).min(strands.uniform.vertices - 1);
-    let vertices = [segment, last * strands.uniform.strands + strand].map(|vertex| vertex as usize);
-    let ends = vertices.map(|vertex| strands.posed(vertex));
-    let before = vertices.map(|vertex| past.posed(vertex));
+    let ends = [first, last].map(|vertex| strands.point_of(strand, vertex));
+    let before = [first, last].map(|vertex| past.point_of(strand, vertex));
     let [to_view, projection] = view.previous_matrices();
     let clip_now = clip(view.view_matrix(), view.projection_matrix());
     let clip_before = clip(to_view, projection);

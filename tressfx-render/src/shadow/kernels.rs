@@ -61,7 +61,7 @@ const PIECE: u32 = 8;
 
 /// Strands of a section that are counted.
 fn samples(draw: &SectionDraw, desc: &ShadowDesc) -> u32 {
-    draw.lod.shadow_strands(draw.strands.buffers.shape).min(desc.samples)
+    draw.shadow_strands().min(desc.samples)
 }
 
 impl Kernels {
@@ -159,7 +159,7 @@ impl Kernels {
             ("arriving", strands.arriving.into()),
         ];
         let resources = [&memory.bindings(set)[..], &own].concat();
-        let grid = Grid::for_threads(draw.vertices(), GROUP);
+        let grid = Grid::for_threads(draw.shaded_vertices(), GROUP);
         self.light.record(list, (set, Some(strands.arriving), None), grid, &resources)
     }
 
@@ -179,7 +179,7 @@ impl Kernels {
             ("positions", strands.buffers.positions.into()),
             ("arriving", strands.arriving.into()),
         ];
-        let grid = Grid::for_threads(draw.vertices(), GROUP);
+        let grid = Grid::for_threads(draw.shaded_vertices(), GROUP);
         self.opaque.record(list, (scene.0, Some(strands.arriving), Some(depth)), grid, &resources)
     }
 }

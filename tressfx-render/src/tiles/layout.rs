@@ -72,7 +72,7 @@ gpu_struct! {
 
 /// Vertices that sections take at most, with all their detail, and what is left free between them.
 pub(crate) fn vertices(draws: &[SectionDraw]) -> u64 {
-    let of = |draw: &SectionDraw| draw.strands.buffers.shape.strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
+    let of = |draw: &SectionDraw| draw.drawn_shape().strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
     draws.iter().map(|draw| u64::from(of(draw))).sum()
 }
 

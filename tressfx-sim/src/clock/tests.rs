@@ -200,9 +200,16 @@ fn time_passes_over_a_head_that_stands_still_as_it_is_simulated() {
     // Two frames more than the path of the head looks back.
     (0..4).for_each(|_| drop(simulated.advance(1.0 / 60.0, head)));
     let mut passed = simulated.clone();
-    for dt in [0.0, 1.0 / 144.0, 1.0 / 60.0, 1.0 / 31.0, 0.0004, 5.0, -1.0, 0.011, 1.0 / 60.0] {
+    for dt in
+        [0.0, 1.0 / 144.0, 1.0 / 60.0, 1.0 / 60.0, 1.0 / 31.0, 0.0004, 5.0, 0.01, 0.02, 0.02, -1.0, 0.011, 1.0 / 60.0]
+    {
         simulated.advance(dt, head);
         passed.pass(dt);
-        assert_eq!(format!("{passed:?}"), format!("{simulated:?}"), "{dt}");
+        let mut settled = passed.clone();
+        settled.settle();
+        assert_eq!(format!("{settled:?}"), format!("{simulated:?}"), "{dt}");
     }
+    let moved = Pose { translation: Vec3::new(0.3, 1.75, -2.0), ..head };
+    let frames = [&mut passed, &mut simulated].map(|clock| format!("{:?}", clock.advance(1.0 / 60.0, moved)));
+    assert_eq!(frames[0], frames[1]);
 }
