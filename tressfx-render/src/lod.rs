@@ -54,7 +54,7 @@ impl Lod {
 
     /// How much wider each strand is.
     pub(crate) fn widening(&self, shape: StrandShape) -> f32 {
-        shape.strands() as f32 / self.strands(shape).max(1.0)
+        if self.share < 1.0 { shape.strands() as f32 / self.strands(shape).max(1.0) } else { 1.0 }
     }
 
     /// What the shaders are given.

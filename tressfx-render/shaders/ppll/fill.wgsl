@@ -4,7 +4,7 @@ import package::grid::{GROUP, thread_index};
 import package::line::Paint;
 import package::ribbon::Ribbon;
 import package::sink::{Sink, counters, pool};
-import package::strands::{paint_of, ribbon_of, section};
+import package::strands::{paint_of, ribbon_of, section, strand_at};
 import package::walk::walk;
 
 @if(bounded)
@@ -45,8 +45,9 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
     var ribbon: Ribbon;
     var paint: Paint;
     if i < section.lod.strands * (section.lod.vertices - 1u) {
-        ribbon = ribbon_of(i % section.lod.strands, i / section.lod.strands);
-        paint = paint_of(i % section.lod.strands, i / section.lod.strands);
+        let strand = strand_at(i % section.lod.strands);
+        ribbon = ribbon_of(strand, i / section.lod.strands);
+        paint = paint_of(strand, i / section.lod.strands);
     }
     var counted: Sink;
     walk(ribbon, paint, &counted);

@@ -26,10 +26,10 @@ const MEAN_SINE: f32 = 0.785398163;
 // Radius of the largest ball of skin, in cells.
 const MAX_SKIN: f32 = 3.0;
 
-fn posed(strand: u32, vertex: u32) -> vec4<f32> {
-    let local = positions[vertex * section.strands + source_of(section.strands, strand)].xyz;
-    let moved = local + moved_aside(section.strands, section.copy_spread, strand);
-    return vec4((section.pose * vec4(moved, 1.0)).xyz, select(0.0, 1.0, is_sound(local)));
+// A vertex of a strand in the world, and whether it is one.
+fn posed(source: u32, vertex: u32, aside: vec3<f32>) -> vec4<f32> {
+    let local = positions[vertex * section.strands + source].xyz;
+    return vec4((section.pose * vec4(local + aside, 1.0)).xyz, select(0.0, 1.0, is_sound(local)));
 }
 
 fn width_at(strand: u32, vertex: u32) -> f32 {
@@ -91,8 +91,10 @@ fn shadow_splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
     let strand = i % samples;
     let vertex = stepped(section.lod, i / samples, section.vertices);
     let next = stepped(section.lod, i / samples + 1u, section.vertices);
-    let start = posed(strand, vertex);
-    let end = posed(strand, next);
+    let source = source_of(section.strands, strand);
+    let aside = moved_aside(section.strands, section.copy_spread, strand);
+    let start = posed(source, vertex, aside);
+    let end = posed(source, next, aside);
     if start.w * end.w == 0.0 {
         return;
     }

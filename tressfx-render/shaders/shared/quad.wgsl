@@ -4,7 +4,7 @@ import package::fragment::Fragment;
 import package::line::{Paint, fragment_at, is_drawn, line_of, overshoot};
 import package::ribbon::{Ribbon, scale_of};
 import package::screen::view;
-import package::strands::{paint_of, ribbon_of, section};
+import package::strands::{paint_of, ribbon_of, section, strand_at};
 
 // Pixels by which a quad is larger than what its ribbon can cover: more than coordinates round to.
 const MARGIN: f32 = 0.25;
@@ -22,13 +22,14 @@ struct Corner {
 // Six vertices a segment, two triangles.
 fn corner_of(vertex: u32) -> Corner {
     let segment = vertex / 6u;
-    let ribbon = ribbon_of(segment % section.lod.strands, segment / section.lod.strands);
+    let strand = strand_at(segment % section.lod.strands);
+    let ribbon = ribbon_of(strand, segment / section.lod.strands);
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         // All corners in one point: nothing is drawn.
         return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     }
-    let paint = paint_of(segment % section.lod.strands, segment / section.lod.strands);
+    let paint = paint_of(strand, segment / section.lod.strands);
     let direction = vec2(line.normal.y, -line.normal.x);
     let extent = max(ribbon.half_width.x, ribbon.half_width.y) + line.reach.x + MARGIN;
     let beyond = overshoot(ribbon, extent) + MARGIN;

@@ -12,37 +12,48 @@ import package::section::{SectionUniform, faded, moved_aside, source_of, stepped
 @group(0) @binding(3) var<storage, read> colors: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> thickness: array<f32>;
 
+// A strand or a copy.
+struct Strand {
+    // The strand in the buffers.
+    index: u32,
+    // How far it is moved away from there.
+    aside: vec3<f32>,
+    // Its width as a share of what it has among others.
+    width: f32,
+}
+
+fn strand_at(number: u32) -> Strand {
+    let aside = moved_aside(section.strands, section.copy_spread, number);
+    return Strand(source_of(section.strands, number), aside, faded(section.lod, number));
+}
+
 // The vertex of the buffers.
 fn full_vertex(vertex: u32) -> u32 {
     return stepped(section.lod, vertex, section.vertices);
 }
 
 // Where a vertex of a strand or of a copy is in the buffers.
-fn vertex_of(strand: u32, vertex: u32) -> u32 {
-    return full_vertex(vertex) * section.strands + source_of(section.strands, strand);
+fn vertex_of(strand: Strand, vertex: u32) -> u32 {
+    return full_vertex(vertex) * section.strands + strand.index;
 }
 
-fn aside_of(strand: u32) -> vec3<f32> {
-    return moved_aside(section.strands, section.copy_spread, strand);
-}
-
-fn is_sound_at(strand: u32, vertex: u32) -> bool {
+fn is_sound_at(strand: Strand, vertex: u32) -> bool {
     return is_sound(positions[vertex_of(strand, vertex)].xyz);
 }
 
 // A vertex in the space of the eye.
-fn point_at(strand: u32, vertex: u32) -> vec3<f32> {
-    let local = positions[vertex_of(strand, vertex)].xyz + aside_of(strand);
+fn point_at(strand: Strand, vertex: u32) -> vec3<f32> {
+    let local = positions[vertex_of(strand, vertex)].xyz + strand.aside;
     let world = section.pose * vec4(local, 1.0);
     return (view.lens.to_eye * world).xyz;
 }
 
-fn radius_at(strand: u32, vertex: u32) -> f32 {
-    let width = thickness[full_vertex(vertex) * section.guides + strand % section.guides];
-    return section.fibre_radius * faded(section.lod, strand) * mix(section.tip_width, 1.0, width);
+fn radius_at(strand: Strand, vertex: u32) -> f32 {
+    let width = thickness[full_vertex(vertex) * section.guides + strand.index % section.guides];
+    return section.fibre_radius * strand.width * mix(section.tip_width, 1.0, width);
 }
 
-fn end_at(strand: u32, vertex: u32) -> End {
+fn end_at(strand: Strand, vertex: u32) -> End {
     return End(point_at(strand, vertex), radius_at(strand, vertex));
 }
 
@@ -66,14 +77,14 @@ fn tilt_between(bend: Bend) -> f32 {
     return tilt_of(middle - pixel_at(bend.before), pixel_at(bend.after) - middle);
 }
 
-fn shaded_at(strand: u32, vertex: u32) -> vec4<f32> {
+fn shaded_at(strand: Strand, vertex: u32) -> vec4<f32> {
     let color = colors[vertex_of(strand, vertex)];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
 }
 
 // Colour and opacity of the surface that is seen at a vertex: they are those of a place before or behind it. `beside` are the
 // vertices before and after it.
-fn paint_between(bend: Bend, strand: u32, vertex: u32, beside: vec2<u32>) -> vec4<f32> {
+fn paint_between(bend: Bend, strand: Strand, vertex: u32, beside: vec2<u32>) -> vec4<f32> {
     let rise = rise_along(view.lens, bend.middle, bend.after - bend.before, radius_at(strand, vertex));
     let edge = select(bend.before, bend.after, rise > 0.0) - bend.middle;
     let share = min(abs(rise) * inverseSqrt(max(dot(edge, edge), 1e-30)), 1.0);
@@ -81,13 +92,13 @@ fn paint_between(bend: Bend, strand: u32, vertex: u32, beside: vec2<u32>) -> vec
 }
 
 // The vertices before and after one; where no segment leads to it or from it, the vertex itself.
-fn neighbours_of(strand: u32, vertex: u32) -> vec2<u32> {
+fn neighbours_of(strand: Strand, vertex: u32) -> vec2<u32> {
     let last = section.lod.vertices - 1u;
     let near = vec2(max(vertex, 1u) - 1u, min(vertex + 1u, last));
     return select(vec2(vertex), near, vec2(is_sound_at(strand, near.x), is_sound_at(strand, near.y)));
 }
 
-fn bend_at(strand: u32, vertex: u32, beside: vec2<u32>) -> Bend {
+fn bend_at(strand: Strand, vertex: u32, beside: vec2<u32>) -> Bend {
     return Bend(point_at(strand, beside.x), point_at(strand, vertex), point_at(strand, beside.y));
 }
 
@@ -98,7 +109,7 @@ struct Stretch {
     end: Bend,
 }
 
-fn stretch_of(strand: u32, vertex: u32) -> Stretch {
+fn stretch_of(strand: Strand, vertex: u32) -> Stretch {
     let first = neighbours_of(strand, vertex).x;
     let last = neighbours_of(strand, vertex + 1u).y;
     let start = Bend(point_at(strand, first), point_at(strand, vertex), point_at(strand, vertex + 1u));
@@ -107,7 +118,7 @@ fn stretch_of(strand: u32, vertex: u32) -> Stretch {
 }
 
 // The segment from a vertex to the next.
-fn ribbon_of(strand: u32, vertex: u32) -> Ribbon {
+fn ribbon_of(strand: Strand, vertex: u32) -> Ribbon {
     if !is_sound_at(strand, vertex) || !is_sound_at(strand, vertex + 1u) {
         return Ribbon();
     }
@@ -121,7 +132,7 @@ fn ribbon_of(strand: u32, vertex: u32) -> Ribbon {
     return clip(ribbon, view.lens, vec2<f32>(view.size), margin_of(ribbon.half_width));
 }
 
-fn paint_of(strand: u32, vertex: u32) -> Paint {
+fn paint_of(strand: Strand, vertex: u32) -> Paint {
     let stretch = stretch_of(strand, vertex);
     return Paint(
         paint_between(stretch.start, strand, vertex, stretch.vertices.xz),

@@ -5,7 +5,7 @@
 import package::line::{Paint, fragment_at, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::sink::{Sink, take};
-import package::strands::{paint_of, ribbon_of, section};
+import package::strands::{paint_of, ribbon_of, section, strand_at};
 
 // Visits the pixels that the ribbon may touch, column by column along the axis that it follows most.
 fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
@@ -30,7 +30,7 @@ fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
 // Visits those of a segment of the section, if there are so many.
 fn walk_segment(segment: u32, sink: ptr<function, Sink>) {
     if segment < section.lod.strands * (section.lod.vertices - 1u) {
-        let strand = segment % section.lod.strands;
+        let strand = strand_at(segment % section.lod.strands);
         let vertex = segment / section.lod.strands;
         walk(ribbon_of(strand, vertex), paint_of(strand, vertex), sink);
     }

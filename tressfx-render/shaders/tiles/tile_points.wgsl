@@ -5,7 +5,7 @@ import package::grid::{GROUP, thread_index};
 import package::joint::ROUND;
 import package::ribbon::{End, on_screen, scale_of};
 import package::screen::view;
-import package::strands::{bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, tilt_between};
+import package::strands::{Strand, bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, strand_at, tilt_between};
 import package::tile::TILE;
 import package::tiles::{SharedTileInfo, nearness_at, tile_columns};
 
@@ -30,7 +30,7 @@ fn point_of(end: End) -> vec4<f32> {
     return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
 }
 
-fn paint_of_vertex(strand: u32, vertex: u32) -> vec4<u32> {
+fn paint_of_vertex(strand: Strand, vertex: u32) -> vec4<u32> {
     let beside = neighbours_of(strand, vertex);
     let bend = bend_at(strand, vertex, beside);
     let paint = paint_between(bend, strand, vertex, beside);
@@ -59,14 +59,15 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     if i >= section.lod.strands * section.lod.vertices {
         return;
     }
-    let strand = i % section.lod.strands;
+    let number = i % section.lod.strands;
+    let strand = strand_at(number);
     let vertex = i / section.lod.strands;
     let sound = is_sound_at(strand, vertex);
     let point = select(NOWHERE, point_of(end_at(strand, vertex)), sound);
     points[i] = point;
     paints[i] = paint_of_vertex(strand, vertex);
     let step = max(section.lod.strands / SAMPLES, 1u);
-    if sound && strand % step == 0u {
+    if sound && number % step == 0u {
         note_nearest(point);
     }
 }

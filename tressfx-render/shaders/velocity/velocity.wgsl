@@ -6,7 +6,7 @@ import package::line::{line_of, place_of};
 import package::motion::MotionUniform;
 import package::ribbon::{along, is_sound};
 import package::screen::view;
-import package::strands::{aside_of, positions, ribbon_of, section, vertex_of};
+import package::strands::{positions, ribbon_of, section, strand_at, vertex_of};
 
 @group(0) @binding(6) var<storage, read> past_positions: array<vec4<f32>>;
 // The numbers of segments, from 1; 0 is no hair.
@@ -37,14 +37,13 @@ fn velocity(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if segment >= section.lod.strands * (section.lod.vertices - 1u) {
         discard;
     }
-    let strand = segment % section.lod.strands;
+    let strand = strand_at(segment % section.lod.strands);
     let vertex = segment / section.lod.strands;
     let ribbon = ribbon_of(strand, vertex);
     let share = along(ribbon, max(place_of(ribbon, line_of(ribbon), pixel), 0.0));
     let start = vertex_of(strand, vertex);
     let end = vertex_of(strand, vertex + 1u);
-    let aside = aside_of(strand);
-    let now = array(positions[start].xyz + aside, positions[end].xyz + aside);
-    let past = array(past_positions[start].xyz + aside, past_positions[end].xyz + aside);
+    let now = array(positions[start].xyz + strand.aside, positions[end].xyz + strand.aside);
+    let past = array(past_positions[start].xyz + strand.aside, past_positions[end].xyz + strand.aside);
     return vec4(moved(now, past, share), 0.0, 0.0);
 }
