@@ -205,6 +205,8 @@ pub struct Setup {
     pub hair_output: bool,
     /// Whether grooms may bring colours of their own along.
     pub own_colors: bool,
+    /// Whether strands may have copies.
+    pub copies: bool,
     /// How shadows are made.
     pub shadows: Option<ShadowDesc>,
 }
@@ -234,13 +236,15 @@ impl Default for Setup {
             depth: DepthOrder::Reverse,
         };
         let technique = Technique::default();
-        Self { camera, size: [96, 64], technique, hair_output: false, own_colors: false, shadows: None }
+        let (hair_output, own_colors, copies) = (false, false, false);
+        Self { camera, size: [96, 64], technique, hair_output, own_colors, copies, shadows: None }
     }
 }
 
 fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
     let desc = RenderDesc::new(setup.size, Format::Rgba16F).technique(setup.technique);
-    let desc = desc.hair_output(setup.hair_output).own_colors(setup.own_colors).shadows(setup.shadows);
+    let desc =
+        desc.hair_output(setup.hair_output).own_colors(setup.own_colors).copies(setup.copies).shadows(setup.shadows);
     HairRenderer::new(backend, &desc).expect("a renderer")
 }
 

@@ -80,7 +80,8 @@ fn copies_are_drawn_as_strands_of_their_own() {
         let Some(wgpu) = gpu() else { return };
         let mut pictures = Vec::new();
         for backend in [wgpu as Box<dyn tressfx_core::backend::Run>, Box::new(VulkanBackend::headless().unwrap())] {
-            let mut screen = Screen::new(backend, |setup: &mut Setup| setup.technique = technique);
+            let mut screen =
+                Screen::new(backend, |setup: &mut Setup| (setup.technique, setup.copies) = (technique, true));
             even_light(&mut screen);
             for (share, step) in [(1.0, 1), (0.83, 1), (0.25, 2), (0.1, 1)] {
                 let few = Groom { lod: Lod { share, step }, ..groom() };
@@ -99,7 +100,9 @@ fn copies_are_drawn_as_strands_of_their_own() {
 
 #[test]
 fn pictures_are_as_in_f64() {
-    let Some(mut screen) = screen(|setup| setup.technique = TilesDesc::default().into()) else { return };
+    let Some(mut screen) = screen(|setup| (setup.technique, setup.copies) = (TilesDesc::default().into(), true)) else {
+        return;
+    };
     let material = material().with(|m| (m.variation, m.secondary.strength) = (0.5, 1.0));
     let groom = Groom { lod: Lod { share: 0.8, step: 1 }, ..Groom::wavy(STRANDS, 11, 8, material) };
     let difference = screen.hair(&[&groom]).difference(&screen.exact(&[&groom]));
@@ -109,7 +112,7 @@ fn pictures_are_as_in_f64() {
 
 #[test]
 fn copies_throw_the_shadow_of_strands_and_take_no_memory() {
-    let shadows = |setup: &mut Setup| setup.shadows = Some(ShadowDesc::default());
+    let shadows = |setup: &mut Setup| (setup.shadows, setup.copies) = (Some(ShadowDesc::default()), true);
     let Some(mut screen) = screen(shadows) else { return };
     let with = |copies: u32| Groom { material: material().with(|m| m.copies = copies), ..groom() };
     let brightness = |screen: &mut Screen, groom: &Groom| {
@@ -133,8 +136,20 @@ fn copies_throw_the_shadow_of_strands_and_take_no_memory() {
 }
 
 #[test]
-fn a_copy_that_reaches_into_the_picture_is_drawn() {
+fn a_renderer_that_knows_of_no_copies_says_so() {
     let Some(mut screen) = screen(|_| ()) else { return };
+    let groom = groom();
+    let mut list = PassList::new();
+    let section = screen.section(&mut list, &groom);
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    let draw = SectionDraw::new(&section, &groom.material, groom.pose);
+    let error = screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap_err();
+    assert!(error.to_string().contains("RenderDesc::copies"), "{error}");
+}
+
+#[test]
+fn a_copy_that_reaches_into_the_picture_is_drawn() {
+    let Some(mut screen) = screen(|setup| setup.copies = true) else { return };
     let mut drawn = |copies: u32, to_the_right: f32| {
         let material = material().with(|m| (m.copies, m.copy_spread) = (copies, 0.1));
         let mut groom = Groom::new(&[vec![Vec3::ZERO, Vec3::Y * 0.1]], material);

@@ -138,6 +138,7 @@ impl Stage {
                 size: scene.size,
                 technique: Technique::default(),
                 hair_output: false,
+                copies: false,
                 own_colors: true,
                 shadows: shadows(),
             },

@@ -65,6 +65,9 @@ pub enum DrawError {
     /// Strands bring colours of their own along that the renderer knows nothing of.
     #[error("hair.render: strands bring colours of their own along, the renderer was made without `own_colors`")]
     OwnColors,
+    /// A material asks for copies of strands, of which the renderer knows nothing.
+    #[error("hair.render: a material has `copies`, the renderer was made without them (`RenderDesc::copies`)")]
+    Copies,
     /// The matrices of the frame before, or the jitter of a view, are not finite.
     #[error("hair.render: the matrices of the frame before, or the jitter, hold numbers that are not finite")]
     PreviousView,

@@ -15,6 +15,8 @@ pub(crate) struct Output {
     pub(crate) color: Format,
     /// Whether depth and coverage of the hair are written too.
     pub(crate) hair: bool,
+    /// Whether strands may have copies.
+    pub(crate) copies: bool,
 }
 
 impl Output {
@@ -30,13 +32,23 @@ impl Output {
 
     /// What the kernels that write or read such a pixel are compiled for.
     pub(crate) fn specialization(self) -> Specialization {
-        Specialization::new().feature("hair_output", self.hair)
+        self.walk().feature("hair_output", self.hair)
     }
+
+    /// What the kernels that walk over strands are compiled for.
+    pub(crate) fn walk(self) -> Specialization {
+        walk(self.copies)
+    }
+}
+
+/// What kernels that walk over strands are compiled for: whether these may have copies.
+pub(crate) fn walk(copies: bool) -> Specialization {
+    Specialization::new().feature("copies", copies)
 }
 
 impl From<Format> for Output {
     /// The picture alone.
     fn from(color: Format) -> Self {
-        Self { color, hair: false }
+        Self { color, hair: false, copies: false }
     }
 }

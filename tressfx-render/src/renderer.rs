@@ -43,6 +43,8 @@ pub struct RenderDesc {
     pub velocity_output: bool,
     /// Whether strands may bring colours of their own along: see [`ShadedStrands::with_own_look`](crate::ShadedStrands::with_own_look).
     pub own_colors: bool,
+    /// Whether strands may have copies: see [`Material::copies`](crate::Material::copies).
+    pub copies: bool,
     /// How shadows are made; none lights every strand as if it were alone.
     pub shadows: Option<ShadowDesc>,
 }
@@ -52,7 +54,8 @@ impl RenderDesc {
     pub fn new(size: [u32; 2], target: Format) -> Self {
         let shadows = Some(ShadowDesc::default());
         let technique = Technique::default();
-        Self { size, target, technique, hair_output: false, velocity_output: false, own_colors: false, shadows }
+        let (hair_output, velocity_output, own_colors, copies) = (false, false, false, false);
+        Self { size, target, technique, hair_output, velocity_output, own_colors, copies, shadows }
     }
 
     /// The same with other shadows, or with none.
@@ -86,8 +89,14 @@ impl RenderDesc {
         Self { own_colors, ..self }
     }
 
+    /// The same with or without strands that have copies, for which kernels of their own are compiled. What does not ask for it pays nothing.
+    #[must_use]
+    pub fn copies(self, copies: bool) -> Self {
+        Self { copies, ..self }
+    }
+
     fn output(&self) -> Output {
-        Output { color: self.target, hair: self.hair_output }
+        Output { color: self.target, hair: self.hair_output, copies: self.copies }
     }
 }
 
@@ -164,8 +173,8 @@ impl HairRenderer {
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
         let ((order, velocity, views, shadows, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.output())?;
-            let velocity = desc.velocity_output.then(|| Velocity::new(backend, desc.size)).transpose()?;
-            let shadows = desc.shadows.map(|desc| Shadows::new(backend, &desc)).transpose()?;
+            let velocity = desc.velocity_output.then(|| Velocity::new(backend, desc.size, desc.copies)).transpose()?;
+            let shadows = desc.shadows.map(|shadows| Shadows::new(backend, &shadows, desc.copies)).transpose()?;
             let shade = Shade::new(backend, shadows.is_some(), desc.own_colors)?;
             Ok::<_, Error>((order, velocity, Views::new(backend)?, shadows, shade))
         })?;
@@ -281,6 +290,7 @@ impl HairRenderer {
     ) -> std::result::Result<(), DrawError> {
         check_lights(lights)?;
         draws.iter().try_for_each(check_section)?;
+        self.check_copies(draws)?;
         let Some(shadows) = &mut self.shadows else { return Ok(()) };
         shadows.begin();
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
@@ -323,6 +333,7 @@ impl HairRenderer {
         if !self.desc.own_colors && draws.iter().any(|draw| draw.strands.own_colors().is_some()) {
             return Err(DrawError::OwnColors);
         }
+        self.check_copies(casting)?;
         self.drawn = drawn;
         self.order.begin(list, views.len(), draws);
         self.shade.begin();
@@ -377,6 +388,11 @@ impl HairRenderer {
         draws.iter().try_for_each(check_section)?;
         let has_past = || draws.iter().all(|draw| draw.is_empty() || draw.strands.past.is_some());
         if self.velocity.is_some() && !has_past() { Err(DrawError::NoPast) } else { Ok(()) }
+    }
+
+    fn check_copies(&self, draws: &[SectionDraw]) -> std::result::Result<(), DrawError> {
+        let has_any = || draws.iter().any(|draw| draw.material.copies > 1);
+        if !self.desc.copies && has_any() { Err(DrawError::Copies) } else { Ok(()) }
     }
 
     fn check_velocity(&self, draw: &ViewDraw) -> std::result::Result<(), DrawError> {

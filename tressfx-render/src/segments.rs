@@ -74,8 +74,9 @@ impl Segments {
         label: Label,
         root: Module,
         library: &'static [Module],
+        specialization: &Specialization,
     ) -> Result<Self> {
-        let kernel = compute(backend, label, root, library, &Specialization::new())?;
+        let kernel = compute(backend, label, root, library, specialization)?;
         Ok(Self { pipeline: Pipeline::Compute(kernel), bound: Bound::new() })
     }
 

@@ -58,10 +58,13 @@ pub(crate) fn shader(
     library: &'static [Module],
     specialization: &Specialization,
 ) -> Result<Arc<Shader>> {
-    // A fragment has one opacity unless a technique asks for more.
-    let is_decided = specialization.features().iter().any(|(name, _)| *name == "places");
-    let one_place = || specialization.clone().feature("places", false);
-    let specialization = if is_decided { specialization.clone() } else { one_place() };
+    // A fragment has one opacity, and a strand no copies, unless somebody asks for more.
+    let mut specialization = specialization.clone();
+    for feature in ["places", "copies"] {
+        if specialization.features().iter().all(|(name, _)| *name != feature) {
+            specialization = specialization.feature(feature, false);
+        }
+    }
     Shader::new(&ShaderSource { label, root, library }, &specialization).map(Arc::new)
 }
 

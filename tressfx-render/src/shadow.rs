@@ -179,9 +179,9 @@ pub(crate) struct Shadows {
 }
 
 impl Shadows {
-    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShadowDesc) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, desc: &ShadowDesc, copies: bool) -> Result<Self> {
         desc.check()?;
-        Ok(Self { desc: *desc, kernels: Kernels::new(backend)?, memory: Memory::new(backend, desc)? })
+        Ok(Self { desc: *desc, kernels: Kernels::new(backend, copies)?, memory: Memory::new(backend, desc)? })
     }
 
     pub(crate) fn begin(&mut self) {

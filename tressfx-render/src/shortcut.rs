@@ -106,7 +106,7 @@ impl ShortCut {
         let output = output.into();
         check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
         check(backend, desc, size, output)?;
-        let k = Specialization::new().constant("K", desc.k);
+        let k = output.walk().constant("K", desc.k);
         Ok(Self {
             desc: *desc,
             output,

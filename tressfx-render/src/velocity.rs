@@ -11,9 +11,10 @@ use tressfx_core::backend::{Backend, Blend, Format, RasterDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Draw, Grid, Load, PassList, RasterPass};
-use tressfx_core::shader::{Binding, Kernel, Module, RasterPipeline, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Module, RasterPipeline};
 
 use crate::bound::Bound;
+use crate::output::walk;
 use crate::resolved::{Resolved, pixels, storage};
 use crate::shaders::{CORNER, GROUP, shader, with_shared};
 use crate::strands::SectionDraw;
@@ -72,13 +73,13 @@ pub(crate) struct Velocity {
 }
 
 impl Velocity {
-    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2]) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], copies: bool) -> Result<Self> {
         let root = ("velocity", include_str!("../shaders/velocity/velocity.wgsl"));
-        let shader = shader(LABEL, root, LIBRARY, &Specialization::new())?;
+        let shader = shader(LABEL, root, LIBRARY, &walk(copies))?;
         let desc = RasterDesc::new(shader).target(VELOCITY_FORMAT, Blend::Replace);
         Ok(Self {
             seen: Seen::new(backend, size)?,
-            walks: [seen_keys::kernel(backend)?, seen_segments::kernel(backend)?],
+            walks: [seen_keys::kernel(backend, copies)?, seen_segments::kernel(backend, copies)?],
             walk_bindings: [Bound::new(), Bound::new()],
             pipeline: backend.create_raster(&desc)?,
             bound: Bound::new(),

@@ -127,7 +127,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
     let mut backend = NullBackend::new(caps);
-    let volume = params.volume.clone();
+    let (volume, copies) = (params.volume.clone(), params.material(0).copies > 1);
     // What strands want at rest takes time and changes no kernel.
     let params = SimParams { sag_free: 0.0, ..params.sim(0).clone() };
     let section = SectionDesc::new(&groom.sections[0], params).with_solver(args.solver.solver());
@@ -145,7 +145,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let technique = args.oit.technique()?;
     let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
     let own_colors = OwnLook::of(&groom.sections[0]).colors().is_some();
-    let desc = desc.velocity_output(true).own_colors(own_colors || args.own_colors);
+    let desc = desc.velocity_output(true).own_colors(own_colors || args.own_colors).copies(copies);
     HairRenderer::new(&mut backend, &desc)?;
     Ok(backend.shaders)
 }

@@ -104,7 +104,8 @@ impl Studio {
         let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
         // Where nothing opaque is drawn, nothing that is not seen keeps light away.
         let shadows = args.shadows.desc().map(|shadows| shadows.skin(!opaque.is_empty()));
-        let desc = desc.shadows(shadows).velocity_output(velocity_output).own_colors(own_colors);
+        let copies = sections.iter().any(|(_, material)| material.copies > 1);
+        let desc = desc.shadows(shadows).velocity_output(velocity_output).own_colors(own_colors).copies(copies);
         let mut renderer = HairRenderer::new(backend, &desc)?;
         let lod = args.lod.desc();
         renderer.grow_to_predicted(backend, &view, &draws(&sections, run.sim.pose(), &view, lod.as_ref()))?;

@@ -71,19 +71,21 @@ fn shaded_vertex(lod: LodUniform, strands: u32, i: u32, vertices: u32) -> vec2<u
 
 // The strand of the buffers, which have so many, that a strand or a copy is: copies are numbered behind all strands, in their order.
 fn source_of(strands: u32, strand: u32) -> u32 {
-    if strand < strands {
-        return strand;
-    }
-    return strand % strands;
+    @if(copies) { return strand % strands; }
+    @if(!copies) { return strand; }
 }
 
 // How far a copy is moved away from its strand: to somewhere in a cube, all vertices alike.
+@if(copies)
 fn moved_aside(strands: u32, spread: f32, strand: u32) -> vec3<f32> {
-    if strand < strands {
-        return vec3(0.0);
-    }
     let seed = 3u * strand;
-    return spread * (2.0 * vec3(hash(seed), hash(seed + 1u), hash(seed + 2u)) - 1.0);
+    let aside = spread * (2.0 * vec3(hash(seed), hash(seed + 1u), hash(seed + 2u)) - 1.0);
+    return select(aside, vec3(0.0), strand < strands);
+}
+
+@if(!copies)
+fn moved_aside(strands: u32, spread: f32, strand: u32) -> vec3<f32> {
+    return vec3(0.0);
 }
 
 // How many strands have the width of all.

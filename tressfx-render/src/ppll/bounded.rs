@@ -94,7 +94,7 @@ impl Bounded {
         check(backend, size, asked, output)?;
         let make = |backend: &mut dyn Backend| {
             let fill = Segments::new(backend, fill, &fill::SHADERS, &fill::bounded(true, output), output.color)?;
-            Ok(Kernels { nearest: nearest::pass(backend)?, fill })
+            Ok(Kernels { nearest: nearest::pass(backend, output)?, fill })
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
         Ok(Prepared { kernels, memory: Memory::new(backend, size, asked, output)? })

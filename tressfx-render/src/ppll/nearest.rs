@@ -4,6 +4,7 @@ use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::shader::Module;
 
+use crate::output::Output;
 use crate::segments::Segments;
 use crate::shaders::with_shared;
 
@@ -14,7 +15,7 @@ const LIBRARY: &[Module] = &with_shared::<3, 19>([
 ]);
 
 /// The pass. It is of compute even where fragment shaders fill the lists behind it: what it finds is the same.
-pub(crate) fn pass(backend: &mut dyn Backend) -> Result<Segments> {
+pub(crate) fn pass(backend: &mut dyn Backend, output: Output) -> Result<Segments> {
     let root = ("nearest", include_str!("../../shaders/ppll/nearest.wgsl"));
-    Segments::compute(backend, "hair.render.nearest", root, LIBRARY)
+    Segments::compute(backend, "hair.render.nearest", root, LIBRARY, &output.walk())
 }

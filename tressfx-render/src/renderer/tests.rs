@@ -44,14 +44,14 @@ fn structs_are_laid_out_as_in_the_wgsl() {
     for shader in [fill, resolve] {
         shader.check_layout::<crate::ppll::PoolUniform>().unwrap();
     }
-    let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
+    let shadows = Shadows::new(&mut backend, &ShadowDesc::default(), true).unwrap();
     let [frames @ .., opaque] = shadows.shaders();
     for shader in frames {
         shader.check_layout::<ShadowUniform>().unwrap();
         shader.check_layout::<ShadowFrameUniform>().unwrap();
     }
     opaque.check_layout::<OpaqueUniform>().unwrap();
-    let velocity = Velocity::new(&mut backend, [64, 64]).unwrap();
+    let velocity = Velocity::new(&mut backend, [64, 64], true).unwrap();
     for shader in velocity.shaders() {
         shader.check_layout::<ViewUniform>().unwrap();
         shader.check_layout::<SectionUniform>().unwrap();
@@ -88,9 +88,9 @@ fn every_kernel_fits_the_limits_of_webgpu() {
         let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
         assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
     }
-    let shadows = Shadows::new(&mut backend, &ShadowDesc::default()).unwrap();
+    let shadows = Shadows::new(&mut backend, &ShadowDesc::default(), true).unwrap();
     assert!(shadows.shaders().into_iter().all(|shader| shader.storage_buffers() <= 5));
-    let velocity = Velocity::new(&mut backend, [64, 64]).unwrap();
+    let velocity = Velocity::new(&mut backend, [64, 64], true).unwrap();
     assert!(velocity.shaders().iter().all(|shader| shader.storage_buffers() <= 5));
     let counts = tiles(&mut backend).shaders().map(|shader| shader.storage_buffers());
     assert_eq!(counts.into_iter().max(), Some(8), "{counts:?}: what `check` asks for");
@@ -117,7 +117,7 @@ fn depth_of_hair_takes_no_storage_buffer_of_its_own() {
     for technique in techniques {
         let [without, with] = [false, true].map(|hair| {
             let mut backend = NullBackend::default();
-            technique.make(&mut backend, [64, 64], Output { color: Format::Rgba16F, hair }).unwrap();
+            technique.make(&mut backend, [64, 64], Output { color: Format::Rgba16F, hair, copies: true }).unwrap();
             backend.shaders.iter().map(|shader| (shader.label, shader.storage_buffers())).collect::<Vec<_>>()
         });
         assert_eq!(with, without, "{technique:?}");
@@ -149,7 +149,7 @@ fn a_technique_knows_what_it_takes() {
     ];
     for technique in techniques {
         for (size, hair) in [[96, 64], [1, 1], [0, 7]].into_iter().flat_map(|size| [(size, false), (size, true)]) {
-            let output = Output { color: Format::Rgba16F, hair };
+            let output = Output { color: Format::Rgba16F, hair, copies: true };
             let mut backend = NullBackend::default();
             let made = technique.make(&mut backend, size, output).unwrap();
             assert_eq!(made.bytes(), backend.memory().bytes, "{technique:?} at {size:?}");

@@ -5,10 +5,11 @@ use tressfx_core::backend::Backend;
 use tressfx_core::error::{Label, Result};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, PassList};
-use tressfx_core::shader::{Binding, Kernel, Module, Specialization};
+use tressfx_core::shader::{Binding, Kernel, Module};
 
 use super::{Memory, ShadowDesc};
 use crate::bound::Bound;
+use crate::output::walk;
 use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 
@@ -33,8 +34,8 @@ struct Pass {
 }
 
 impl Pass {
-    fn new(backend: &mut dyn Backend, label: Label, root: Module) -> Result<Self> {
-        let kernel = compute(backend, label, root, LIBRARY, &Specialization::new())?;
+    fn new(backend: &mut dyn Backend, label: Label, root: Module, copies: bool) -> Result<Self> {
+        let kernel = compute(backend, label, root, LIBRARY, &walk(copies))?;
         Ok(Self { kernel, bound: Bound::new() })
     }
 
@@ -65,7 +66,7 @@ fn samples(draw: &SectionDraw, desc: &ShadowDesc) -> u32 {
 }
 
 impl Kernels {
-    pub(super) fn new(backend: &mut dyn Backend) -> Result<Self> {
+    pub(super) fn new(backend: &mut dyn Backend, copies: bool) -> Result<Self> {
         let bounds = ("shadow_bounds", include_str!("../../shaders/shadow/shadow_bounds.wgsl"));
         let splat = ("shadow_splat", include_str!("../../shaders/shadow/shadow_splat.wgsl"));
         let sum = ("shadow_sum", include_str!("../../shaders/shadow/shadow_sum.wgsl"));
@@ -73,12 +74,12 @@ impl Kernels {
         let light = ("shadow_light", include_str!("../../shaders/shadow/shadow_light.wgsl"));
         let opaque = ("shadow_opaque", include_str!("../../shaders/shadow/shadow_opaque.wgsl"));
         Ok(Self {
-            bounds: Pass::new(backend, "hair.render.shadow_bounds", bounds)?,
-            splat: Pass::new(backend, "hair.render.shadow_splat", splat)?,
-            sum: Pass::new(backend, "hair.render.shadow_sum", sum)?,
-            sky: Pass::new(backend, "hair.render.shadow_sky", sky)?,
-            light: Pass::new(backend, "hair.render.shadow_light", light)?,
-            opaque: Pass::new(backend, "hair.render.shadow_opaque", opaque)?,
+            bounds: Pass::new(backend, "hair.render.shadow_bounds", bounds, copies)?,
+            splat: Pass::new(backend, "hair.render.shadow_splat", splat, copies)?,
+            sum: Pass::new(backend, "hair.render.shadow_sum", sum, false)?,
+            sky: Pass::new(backend, "hair.render.shadow_sky", sky, false)?,
+            light: Pass::new(backend, "hair.render.shadow_light", light, false)?,
+            opaque: Pass::new(backend, "hair.render.shadow_opaque", opaque, false)?,
         })
     }
 

@@ -102,7 +102,7 @@ impl Kernels {
         let blend = ("tile_blend", include_str!("../../shaders/tiles/tile_blend.wgsl"));
         let reopen = ("tile_reopen", include_str!("../../shaders/tiles/tile_reopen.wgsl"));
         Ok(Self {
-            points: Pass::new(backend, "hair.render.tile_points", points)?,
+            points: Pass::specialized(backend, "hair.render.tile_points", points, &output.walk())?,
             depth: Pass::new(backend, "hair.render.tile_depth", depth)?,
             bin: Pass::new(backend, "hair.render.tile_bin", bin)?,
             alloc: Pass::new(backend, "hair.render.tile_alloc", alloc)?,

@@ -2,14 +2,15 @@
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
-use tressfx_core::shader::{Kernel, Module, Specialization};
+use tressfx_core::shader::{Kernel, Module};
 
+use crate::output::walk;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
     &with_shared::<1, 17>([("sink", include_str!("../../shaders/velocity/seen_keys_sink.wgsl"))]);
 
-pub(super) fn kernel(backend: &mut dyn Backend) -> Result<Kernel> {
+pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_keys", include_str!("../../shaders/velocity/seen_keys.wgsl"));
-    compute(backend, "hair.render.seen_keys", root, LIBRARY, &Specialization::new())
+    compute(backend, "hair.render.seen_keys", root, LIBRARY, &walk(copies))
 }

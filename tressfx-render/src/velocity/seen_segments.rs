@@ -2,15 +2,16 @@
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
-use tressfx_core::shader::{Kernel, Module, Specialization};
+use tressfx_core::shader::{Kernel, Module};
 
 use super::MOTION;
+use crate::output::walk;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
     &with_shared::<2, 18>([MOTION, ("sink", include_str!("../../shaders/velocity/seen_segments_sink.wgsl"))]);
 
-pub(super) fn kernel(backend: &mut dyn Backend) -> Result<Kernel> {
+pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_segments", include_str!("../../shaders/velocity/seen_segments.wgsl"));
-    compute(backend, "hair.render.seen_segments", root, LIBRARY, &Specialization::new())
+    compute(backend, "hair.render.seen_segments", root, LIBRARY, &walk(copies))
 }
