@@ -50,44 +50,49 @@ pub(crate) fn of(strands: &Strands) -> (Vec3, f32) {
     if middle.is_finite() && reach.is_finite() { (middle, reach) } else { (Vec3::ZERO, f32::INFINITY) }
 }
 
-/// What holds a section, in the world.
+/// What holds a section, in the world. Small, since there may be thousands.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
-    center: DVec3,
-    radius: f64,
+    center: Vec3,
+    radius: f32,
 }
 
 impl Ball {
     fn of(draw: &SectionDraw) -> Self {
-        let (strands, center) = (draw.strands, draw.pose.translation.as_dvec3());
+        let (strands, center) = (draw.strands, draw.pose.translation);
         let fibre = strands.radius(draw.material) * draw.lod.widening(draw.drawn_shape());
-        Self { center, radius: f64::from(strands.reach) + f64::from(fibre) + f64::from(draw.farthest_copy()) }
+        // More than what is lost where the numbers are added.
+        Self { center, radius: (strands.reach + fibre + draw.farthest_copy()) * (1.0 + 4.0 * f32::EPSILON) }
     }
 
     /// One that holds all of these, if there are any.
     fn around(balls: &[Self]) -> Option<Self> {
-        let low = balls.iter().map(|ball| ball.center - ball.radius).reduce(DVec3::min)?;
-        let high = balls.iter().map(|ball| ball.center + ball.radius).reduce(DVec3::max)?;
-        Some(Self { center: low.midpoint(high), radius: 0.5 * low.distance(high) })
+        let reach = |ball: &Self| DVec3::splat(ball.radius.into());
+        let low = balls.iter().map(|ball| ball.center.as_dvec3() - reach(ball)).reduce(DVec3::min)?;
+        let high = balls.iter().map(|ball| ball.center.as_dvec3() + reach(ball)).reduce(DVec3::max)?;
+        let center = low.midpoint(high).as_vec3();
+        let radius = 0.5 * low.distance(high) + center.as_dvec3().distance(low.midpoint(high));
+        Some(Self { center, radius: radius as f32 * (1.0 + f32::EPSILON) })
     }
 
     /// Whether a view may see any of it.
     fn is_seen(&self, planes: &[DVec4]) -> bool {
         // What is no number is not known to be outside.
-        !planes.iter().any(|plane| plane.dot(self.center.extend(1.0)) < -self.radius)
+        let (center, radius) = (self.center.as_dvec3().extend(1.0), f64::from(self.radius));
+        !planes.iter().any(|plane| plane.dot(center) < -radius)
     }
 
     /// Whether it may take light from another one.
     fn shades(&self, other: &Self, light: &Casting) -> bool {
-        let apart = self.center - other.center;
-        let radii = self.radius + other.radius;
+        let apart = self.center.as_dvec3() - other.center.as_dvec3();
+        let radii = f64::from(self.radius) + f64::from(other.radius);
         let (square, most) = (apart.length_squared(), radii * radii);
         light.has_sky && square <= SKY * SKY * most
             || light.from.iter().any(|from| match from {
                 // The distance from the way of the light, and what rounding may make of it.
                 From::Afar(towards) => square - apart.dot(*towards).max(0.0).powi(2) <= most + square * ROUNDING,
                 From::Point(position) => {
-                    let way = position - other.center;
+                    let way = position - other.center.as_dvec3();
                     let along = apart.dot(way) / way.length_squared().max(1e-30);
                     apart.distance_squared(way * along.clamp(0.0, 1.0)) <= most
                 }

@@ -38,6 +38,8 @@ pub struct Clock {
     pose: Pose,
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
+    /// Sub-steps in a second.
+    rate: f64,
     /// Where the head stands still and frames have passed: the lengths of the last two, s, which `before` has not been told yet.
     still: Option<[f64; 2]>,
 }
@@ -68,6 +70,7 @@ impl Clock {
             simulated_head: Pose::IDENTITY,
             pose: drawn(center, &Pose::IDENTITY, &Pose::IDENTITY),
             velocities: None,
+            rate: params.sub_step.recip(),
             still: None,
         })
     }
@@ -84,6 +87,7 @@ impl Clock {
     pub fn set_params(&mut self, params: ClockParams) -> Result<(), ParamError> {
         params.validate()?;
         self.params = params;
+        self.rate = params.sub_step.recip();
         Ok(())
     }
 
@@ -203,7 +207,7 @@ impl Clock {
 
     /// Sub-steps in so many more seconds.
     fn count(&self, simulated: f64) -> u32 {
-        ((self.behind + simulated) / self.params.sub_step + TOLERANCE) as u32
+        ((self.behind + simulated) * self.rate + TOLERANCE) as u32
     }
 
     /// The same where the head is known within the frame too: at even distances in time, it was at these poses before it came

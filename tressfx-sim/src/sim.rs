@@ -166,12 +166,7 @@ impl HairSim {
     pub fn step(&mut self, list: &mut PassList, input: &StepInput) -> Result<StepReport, SimError> {
         // What is given again was in order before.
         if !self.sleeps_on_in(input) {
-            input.validate()?;
-            let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
-            if input.colliders.len() > most {
-                return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
-            }
-            self.check_fields(input)?;
+            self.check(input)?;
             self.note(input);
         }
         if self.is_asleep() {
@@ -200,7 +195,12 @@ impl HairSim {
         Ok(report)
     }
 
-    fn check_fields(&self, input: &StepInput) -> Result<(), SimError> {
+    fn check(&self, input: &StepInput) -> Result<(), SimError> {
+        input.validate()?;
+        let most = self.shared.colliders.map_or(0, |buffers| buffers.most);
+        if input.colliders.len() > most {
+            return Err(SimError::TooManyColliders { given: input.colliders.len(), most });
+        }
         let count = self.field_count;
         for (index, collider) in input.colliders.iter().enumerate() {
             match collider.shape {
