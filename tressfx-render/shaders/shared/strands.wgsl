@@ -13,18 +13,40 @@ import package::section::{SectionUniform, faded, moved_aside, source_of, stepped
 @group(0) @binding(4) var<storage, read> thickness: array<f32>;
 
 // A strand or a copy.
+@if(copies)
 struct Strand {
-    // The strand in the buffers.
+    number: u32,
+    // In the buffers, and how far it is moved away from there.
     index: u32,
-    // How far it is moved away from there.
     aside: vec3<f32>,
-    // Its width as a share of what it has among others.
-    width: f32,
 }
 
+// Without copies it is its number: what more were kept would take registers from kernels that have none left.
+@if(!copies)
+alias Strand = u32;
+
 fn strand_at(number: u32) -> Strand {
-    let aside = moved_aside(section.strands, section.copy_spread, number);
-    return Strand(source_of(section.strands, number), aside, faded(section.lod, number));
+    @if(copies) {
+        let aside = moved_aside(section.strands, section.copy_spread, number);
+        return Strand(number, source_of(section.strands, number), aside);
+    }
+    @if(!copies) { return number; }
+}
+
+fn number_of(strand: Strand) -> u32 {
+    @if(copies) { return strand.number; }
+    @if(!copies) { return strand; }
+}
+
+fn index_of(strand: Strand) -> u32 {
+    @if(copies) { return strand.index; }
+    @if(!copies) { return strand; }
+}
+
+// A position of the buffers.
+fn placed(strand: Strand, position: vec4<f32>) -> vec3<f32> {
+    @if(copies) { return position.xyz + strand.aside; }
+    @if(!copies) { return position.xyz; }
 }
 
 // The vertex of the buffers.
@@ -34,7 +56,7 @@ fn full_vertex(vertex: u32) -> u32 {
 
 // Where a vertex of a strand or of a copy is in the buffers.
 fn vertex_of(strand: Strand, vertex: u32) -> u32 {
-    return full_vertex(vertex) * section.strands + strand.index;
+    return full_vertex(vertex) * section.strands + index_of(strand);
 }
 
 fn is_sound_at(strand: Strand, vertex: u32) -> bool {
@@ -43,14 +65,13 @@ fn is_sound_at(strand: Strand, vertex: u32) -> bool {
 
 // A vertex in the space of the eye.
 fn point_at(strand: Strand, vertex: u32) -> vec3<f32> {
-    let local = positions[vertex_of(strand, vertex)].xyz + strand.aside;
-    let world = section.pose * vec4(local, 1.0);
+    let world = section.pose * vec4(placed(strand, positions[vertex_of(strand, vertex)]), 1.0);
     return (view.lens.to_eye * world).xyz;
 }
 
 fn radius_at(strand: Strand, vertex: u32) -> f32 {
-    let width = thickness[full_vertex(vertex) * section.guides + strand.index % section.guides];
-    return section.fibre_radius * strand.width * mix(section.tip_width, 1.0, width);
+    let width = thickness[full_vertex(vertex) * section.guides + index_of(strand) % section.guides];
+    return section.fibre_radius * faded(section.lod, number_of(strand)) * mix(section.tip_width, 1.0, width);
 }
 
 fn end_at(strand: Strand, vertex: u32) -> End {

@@ -6,7 +6,7 @@ import package::line::{line_of, place_of};
 import package::motion::MotionUniform;
 import package::ribbon::{along, is_sound};
 import package::screen::view;
-import package::strands::{positions, ribbon_of, section, strand_at, vertex_of};
+import package::strands::{placed, positions, ribbon_of, section, strand_at, vertex_of};
 
 @group(0) @binding(6) var<storage, read> past_positions: array<vec4<f32>>;
 // The numbers of segments, from 1; 0 is no hair.
@@ -43,7 +43,7 @@ fn velocity(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let share = along(ribbon, max(place_of(ribbon, line_of(ribbon), pixel), 0.0));
     let start = vertex_of(strand, vertex);
     let end = vertex_of(strand, vertex + 1u);
-    let now = array(positions[start].xyz + strand.aside, positions[end].xyz + strand.aside);
-    let past = array(past_positions[start].xyz + strand.aside, past_positions[end].xyz + strand.aside);
+    let now = array(placed(strand, positions[start]), placed(strand, positions[end]));
+    let past = array(placed(strand, past_positions[start]), placed(strand, past_positions[end]));
     return vec4(moved(now, past, share), 0.0, 0.0);
 }
