@@ -126,7 +126,7 @@ impl Measure {
             flip: comparison.flip_mean,
             psnr_db: comparison.psnr_db,
             largest: comparison.max_difference,
-            passes: passes(&stats),
+            passes: passes(&stats, self.is_light),
             fragments: stats.render.fragments,
             dropped: stats.render.dropped,
             bytes: if self.is_light { stats.render.shadow_bytes } else { stats.render.oit_bytes },
@@ -140,8 +140,11 @@ impl Measure {
 }
 
 /// Of the passes that draw hair in most of the frames. Those of the first frames alone are no part of what a frame takes.
-fn passes(stats: &Stats) -> Vec<PassTime> {
-    let is_usual = |pass: &&PassStats| pass.label.starts_with("hair.render.") && 2 * pass.frames > stats.frames;
+/// The passes of most frames; those of shadows, which are the same for all techniques, only where light is judged.
+fn passes(stats: &Stats, is_light: bool) -> Vec<PassTime> {
+    let is_judged =
+        |label: &str| label.starts_with("hair.render.") && (is_light || !label.starts_with("hair.render.shadow_"));
+    let is_usual = |pass: &&PassStats| is_judged(&pass.label) && 2 * pass.frames > stats.frames;
     stats
         .passes
         .iter()

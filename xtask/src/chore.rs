@@ -32,6 +32,8 @@ const PICTURES: [(&str, &str); 36] = [
     ("lod-5.png", "builtin:long --frames 0 --size 30x30 --camera 0,-0.17,19.2,0,-0.17,0,1.706 --lod"),
     ("between.png", "builtin:long:400:16 --frames 20 --motion shake --interpolate 16000 --size 500x400"),
     ("between-all.png", "builtin:long:16000:16 --frames 20 --motion shake --size 500x400"),
+    ("copies-1.png", "builtin:wavy:300:24 --frames 20 --size 500x400"),
+    ("copies-32.png", "builtin:wavy:300:24 --frames 20 --size 500x400 --params docs/copies.toml"),
     ("volume-none.png", "builtin:curly:700 --params docs/soft.toml --frames 50 --size 320x320"),
     ("volume.png", "builtin:curly:700 --params docs/soft.toml --frames 50 --size 320x320 --volume"),
     ("preset-baby.png", "builtin:straight:3000 --motion shake --frames 42 --size 320x320 --preset baby"),
