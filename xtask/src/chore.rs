@@ -9,7 +9,7 @@ use crate::{compilers, driver, validation};
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
 
 /// Pictures of the documentation: what is typed after `tressfx render`, but for `--out`.
-const PICTURES: [(&str, &str); 36] = [
+const PICTURES: [(&str, &str); 38] = [
     ("long.png", "builtin:long --motion turn --frames 90 --size 960x540"),
     ("straight.png", "builtin:straight --frames 60 --size 960x540"),
     ("wavy.png", "builtin:wavy --frames 60 --size 960x540"),
