@@ -224,6 +224,20 @@ fn what_is_wrong_is_named() {
     assert!(tfxskin::read("s", &bad).unwrap_err().to_string().contains("strand 0"));
 }
 
+/// Such a file made the crate that reads JSON of glTF panic, which takes the chunk for another `.glb`.
+#[test]
+fn a_glb_whose_json_begins_as_a_glb_does_is_refused() {
+    let inner = b"glTF\x02\0\0\0\0\0\0\0";
+    let mut file = b"glTF".to_vec();
+    for number in [2, 20 + inner.len() as u32, inner.len() as u32] {
+        file.extend(number.to_le_bytes());
+    }
+    file.extend(b"JSON");
+    file.extend(inner);
+    let error = read_gltf(&file).unwrap_err().to_string();
+    assert!(error.contains("JSON") && error.contains("expected value"), "{error}");
+}
+
 #[test]
 fn a_point_cache_is_the_same_when_read_again() {
     let positions = (0..30).map(|i| Vec3::new(i as f32, -0.0, 1e-40 * i as f32)).collect();

@@ -42,7 +42,8 @@ pub(crate) fn is_like(data: &[u8]) -> bool {
 pub fn read_bytes(name: &str, data: &[u8], folder: Option<&Path>) -> Result<Character, FileError> {
     let (json, binary) = if data.starts_with(MAGIC) { chunks(Bytes { name, data })? } else { (data, None) };
     let wrong = |error: ::gltf::Error| FileError::new(name, "JSON", FileErrorKind::Gltf(error.to_string()));
-    let root = ::gltf::Gltf::from_slice_without_validation(json).map_err(wrong)?.document.into_json();
+    // Not by `Gltf::from_slice`: it would take a chunk that begins as a `.glb` does for another one, and panics where that is cut short.
+    let root: Root = ::gltf::json::deserialize::from_slice(json).map_err(::gltf::Error::Deserialize).map_err(wrong)?;
     check_indices(name, &root)?;
     let document = Document::from_json(root).map_err(wrong)?;
     if let Some(extension) = document.extensions_required().next() {
