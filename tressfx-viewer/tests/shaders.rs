@@ -19,6 +19,9 @@ const BARE: &str = "[sim]\nglobal_stiffness = 0.0\nlocal_stiffness = 0.0\nlength
 /// Rods with all that they may have, hair against hair too.
 const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volume]\n";
 
+/// Strands that are drawn three times.
+const COPIES: &str = "[material]\ncopies = 3\n";
+
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
 const VARIANTS: [&[&str]; 18] = [
     &["builtin:long:40:8"],
@@ -29,16 +32,16 @@ const VARIANTS: [&[&str]; 18] = [
     &["pinned.tfx", "--solver", "tressfx", "--params", "bare.toml"],
     &["--fill", "raster"],
     &["--oit-cap", "8"],
-    &["--oit-cap", "2", "--fill", "raster"],
+    &["--oit-cap", "2", "--fill", "raster", "--params", "copies.toml"],
     &["--oit", "shortcut", "--oit-k", "1"],
     &["--oit", "shortcut", "--oit-ordered", "--oit-k", "8"],
-    &["--oit", "shortcut", "--oit-ordered", "--fill", "raster"],
+    &["--oit", "shortcut", "--oit-ordered", "--fill", "raster", "--params", "copies.toml"],
     &["pinned.tfx"],
     &["builtin:long:40:8", "--params", "rods.toml", "--fields"],
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
-    &["--oit", "shortcut", "--hair-output"],
+    &["--oit", "shortcut", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles"],
-    &["--oit", "tiles", "--places", "4", "--hair-output"],
+    &["--oit", "tiles", "--places", "4", "--hair-output", "--params", "copies.toml"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {
@@ -53,6 +56,7 @@ fn folder(test: &str) -> PathBuf {
     fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join("bare.toml"), BARE).unwrap();
     fs::write(folder.join("rods.toml"), RODS).unwrap();
+    fs::write(folder.join("copies.toml"), COPIES).unwrap();
     let convert = ["convert", "builtin:wavy:30:8", "pinned.tfx"];
     let done = Command::new(env!("CARGO_BIN_EXE_tressfx")).current_dir(&folder).args(convert).status().unwrap();
     assert!(done.success());
@@ -98,6 +102,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     let names = [
         "bounded",
         "clump",
+        "copies",
         "fibre",
         "fields",
         "follows",
