@@ -145,6 +145,12 @@ fn a_renderer_that_knows_of_no_copies_says_so() {
     let draw = SectionDraw::new(&section, &groom.material, groom.pose);
     let error = screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap_err();
     assert!(error.to_string().contains("RenderDesc::copies"), "{error}");
+    for (copies, spread) in [(0, 0.0), (33, 0.0), (u32::MAX, 0.0), (2, -1.0), (2, f32::NAN)] {
+        let material = groom.material.with(|m| (m.copies, m.copy_spread) = (copies, spread));
+        let draw = SectionDraw::new(&section, &material, groom.pose);
+        let error = screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap_err();
+        assert!(error.to_string().contains("1 to 32"), "{error}");
+    }
 }
 
 #[test]

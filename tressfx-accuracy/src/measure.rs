@@ -139,8 +139,8 @@ impl Measure {
     }
 }
 
-/// Of the passes that draw hair in most of the frames. Those of the first frames alone are no part of what a frame takes.
-/// The passes of most frames; those of shadows, which are the same for all techniques, only where light is judged.
+/// Of the passes that draw hair in most of the frames. Those of the first frames alone are no part of what a frame takes, nor are those of shadows, which are the same
+/// for all techniques, but where light is judged.
 fn passes(stats: &Stats, is_light: bool) -> Vec<PassTime> {
     let is_judged =
         |label: &str| label.starts_with("hair.render.") && (is_light || !label.starts_with("hair.render.shadow_"));

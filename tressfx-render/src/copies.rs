@@ -10,7 +10,7 @@ pub(crate) const MAX_COPIES: u32 = 32;
 
 /// What is drawn of a section: its copies count as follow strands.
 pub(crate) fn drawn_shape(shape: StrandShape, copies: u32) -> StrandShape {
-    StrandShape { follows: (1 + shape.follows).saturating_mul(copies.max(1)) - 1, ..shape }
+    StrandShape { follows: (1 + shape.follows) * copies.clamp(1, MAX_COPIES) - 1, ..shape }
 }
 
 /// How far a strand that is drawn is moved aside: the strands themselves not at all, copies to somewhere in a cube.

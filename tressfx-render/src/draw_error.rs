@@ -4,6 +4,7 @@ use glam::Vec3;
 use tressfx_core::error::Error;
 use tressfx_core::view::PoseError;
 
+use crate::copies::MAX_COPIES;
 use crate::lights::{Cone, LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::strands::SectionDraw;
@@ -65,6 +66,16 @@ pub enum DrawError {
     /// Strands bring colours of their own along that the renderer knows nothing of.
     #[error("hair.render: strands bring colours of their own along, the renderer was made without `own_colors`")]
     OwnColors,
+    /// A material has a number of copies, or a spread of them, that cannot be drawn.
+    #[error(
+        "hair.render: a material has {copies} `copies` with a `copy_spread` of {spread}, it may have 1 to {MAX_COPIES} and 0 or more"
+    )]
+    CopyCount {
+        /// How many.
+        copies: u32,
+        /// How far they are moved, m.
+        spread: f32,
+    },
     /// A material asks for copies of strands, of which the renderer knows nothing.
     #[error("hair.render: a material has `copies`, the renderer was made without them (`RenderDesc::copies`)")]
     Copies,
@@ -92,6 +103,11 @@ pub enum DrawError {
 /// Whether a section can be drawn like this.
 pub(crate) fn check_section(draw: &SectionDraw) -> Result<(), DrawError> {
     draw.pose.validate()?;
+    let (copies, spread) = (draw.material.copies, draw.material.copy_spread);
+    let can_be_drawn = (1..=MAX_COPIES).contains(&copies) && spread >= 0.0 && spread.is_finite();
+    if !can_be_drawn {
+        return Err(DrawError::CopyCount { copies, spread });
+    }
     let Lod { share, step } = draw.lod;
     if draw.lod.is_valid() { Ok(()) } else { Err(DrawError::Lod { share, step }) }
 }

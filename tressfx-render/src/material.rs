@@ -28,8 +28,8 @@ pub struct Material {
     pub fibre_radius: Option<f32>,
     /// Width at the tip as a share of the width at the root.
     pub tip_width: f32,
-    /// Strands that are drawn for each one, itself among them, 1 to 32: thicker hair that costs neither simulation nor memory of its own. The radius that is fitted to a
-    /// groom is that of so many strands.
+    /// Strands that are drawn for each one, itself among them, 1 to 32: thicker hair that costs neither simulation nor memory of its own. A radius that is fitted to a
+    /// groom is divided by it, down to 60 micrometres.
     pub copies: u32,
     /// How far copies are moved away from their strand at most, along each axis.
     pub copy_spread: f32,

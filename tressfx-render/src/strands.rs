@@ -10,7 +10,7 @@ use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 
-use crate::copies::{drawn_shape, moved_aside};
+use crate::copies::{MAX_COPIES, drawn_shape, moved_aside};
 use crate::draw_error::DrawError;
 use crate::lod::{Bends, Lod};
 use crate::material::Material;
@@ -83,9 +83,12 @@ impl StrandInfo {
         }
     }
 
-    /// Radius of a fibre in the unit of the positions. One that is fitted falls with the number of copies.
+    /// Radius of a fibre in the unit of the positions. One that is fitted is shared by the copies, down to [`MIN_FITTING_RADIUS`].
     pub(crate) fn radius(&self, material: &Material) -> f32 {
-        let fitting = || (self.fitting_radius / material.copies.max(1) as f32).max(MIN_FITTING_RADIUS as f32);
+        let fitting = || match material.copies {
+            0 | 1 => self.fitting_radius,
+            copies => (self.fitting_radius / copies as f32).max(MIN_FITTING_RADIUS as f32),
+        };
         material.fibre_radius.unwrap_or_else(fitting) / self.metres_per_unit
     }
 }
@@ -329,7 +332,7 @@ impl<'a> SectionDraw<'a> {
     /// What strands and copies have of something that the buffers have for each vertex of a strand, in the order of [`SectionDraw::drawn_shape`]: for tools.
     pub fn copied<T: Copy>(&self, values: &[T]) -> Vec<T> {
         let row = self.strands.buffers.shape.strands().max(1) as usize;
-        values.chunks(row).flat_map(|row| row.repeat(self.material.copies as usize)).collect()
+        values.chunks(row).flat_map(|row| row.repeat(self.material.copies.clamp(1, MAX_COPIES) as usize)).collect()
     }
 
     /// The same for positions: where the vertices of copies are.

@@ -59,7 +59,7 @@ pub(crate) struct SimStats {
 pub(crate) struct RenderStats {
     /// What drew it: `ppll`, `shortcut` or `tiles`.
     pub(crate) technique: &'static str,
-    /// Vertices of strands that were shaded and drawn.
+    /// Vertices of strands that were drawn.
     pub(crate) vertices: u64,
     /// That hair made, dropped ones too.
     pub(crate) fragments: u64,

@@ -71,8 +71,8 @@ impl<K: Eq + std::hash::Hash> Pass<K> {
 pub(crate) struct Kernels {
     /// By the scene.
     depth: Pass<TextureId>,
-    /// By section and its place.
-    points: Pass<(BufferId, u32)>,
+    /// By section, its place and its vertices.
+    points: Pass<(BufferId, u32, u32)>,
     /// By the round that it stores, or none.
     bin: Pass<Option<u32>>,
     alloc: Pass<()>,
@@ -158,7 +158,7 @@ impl Kernels {
             ("infos", memory.screen.infos.into()),
         ];
         let grid = Grid::for_threads(draw.vertices(), GROUP);
-        self.points.record(list, (view.index, (strands.colors, first)), Groups::Grid(grid), &resources)
+        self.points.record(list, (view.index, (strands.colors, first, draw.vertices())), Groups::Grid(grid), &resources)
     }
 
     /// The farthest that the scene shows in each tile.

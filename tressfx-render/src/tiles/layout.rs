@@ -72,8 +72,11 @@ gpu_struct! {
 
 /// Vertices that sections take at most, with all their detail, and what is left free between them.
 pub(crate) fn vertices(draws: &[SectionDraw]) -> u64 {
-    let of = |draw: &SectionDraw| draw.drawn_shape().strand_vertices().next_multiple_of(VERTEX_ALIGNMENT);
-    draws.iter().map(|draw| u64::from(of(draw))).sum()
+    let of = |draw: &SectionDraw| {
+        let shape = draw.drawn_shape();
+        (u64::from(shape.strands()) * u64::from(shape.vertices)).next_multiple_of(VERTEX_ALIGNMENT.into())
+    };
+    draws.iter().map(of).sum()
 }
 
 /// Where the sections of a frame are.
