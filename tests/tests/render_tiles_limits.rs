@@ -14,7 +14,7 @@ use tressfx_render::{
     Counters, HairRenderer, Lights, RenderDesc, SectionDraw, ShadedStrands, Targets, TilesDesc, ViewDraw,
 };
 
-use support::hair::{is_sound, material, tiles};
+use support::hair::{is_sound, material, tiles, varied};
 use support::screen;
 
 #[test]
@@ -38,6 +38,36 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
         // With room for a single one, 64 rounds do not reach.
         assert_eq!(again.counters.dropped > 0, room == 1, "{room} of {wanted}");
         assert!(room == 1 || again.bytes == all.bytes, "{room} of {wanted}");
+    }
+}
+
+#[test]
+fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
+    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
+    let plain = TilesDesc::default();
+    let kinds = [plain, plain.places(4), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
+    for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+        let mut frames: Vec<(Vec<u8>, Counters)> = Vec::new();
+        for few_tiles in [0, 20, u32::MAX] {
+            let setup = |setup: &mut Setup| {
+                (setup.technique, setup.size) = (kind.few_tiles(few_tiles).into(), [125, 90]);
+                setup.hair_output = output;
+            };
+            let Some(mut screen) = screen(setup) else { return };
+            // Rounds come with the second frame, and what was hidden in the one before.
+            for frame in 0..3 {
+                let picture = screen.hair(&grooms.each_ref());
+                screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+                let seen = (picture.bytes.clone(), Counters { wanted: 0, ..picture.counters });
+                if few_tiles == 0 {
+                    frames.push(seen);
+                    continue;
+                }
+                // Which tiles have no room for their references is not said.
+                let first = &frames[frame];
+                assert!(first.1.dropped > 0 || *first == seen, "{kind:?}, {few_tiles} few, frame {frame}");
+            }
+        }
     }
 }
 

@@ -48,9 +48,16 @@ pub struct TilesDesc {
     /// Places in a pixel where light passes hair for itself, one of [`TilesDesc::PLACES`]. With one, what a strand covers of a pixel
     /// hides that share of all that is behind it. With four, strands that run behind each other are seen beside each other.
     pub places: u32,
+    /// Tiles with hair up to which the pixels of each are divided among 16 groups, not among four: where hair covers little of the
+    /// picture, more of the device has work. The picture is the same. Best is about as many as the device can blend at once, each by four
+    /// groups of 128 lanes. None: [`TilesDesc::FEW_TILES`], and 0 on a CPU.
+    pub few_tiles: Option<u32>,
 }
 
 impl TilesDesc {
+    /// [`TilesDesc::few_tiles`] of a GPU, unless another number is given.
+    pub const FEW_TILES: u32 = 256;
+
     /// The largest [`TilesDesc::max_reference_bytes`].
     pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
 
@@ -75,6 +82,12 @@ impl TilesDesc {
         Self { skips_hidden: skips_hidden.into(), ..self }
     }
 
+    /// The same with another number of tiles that are few.
+    #[must_use]
+    pub fn few_tiles(self, few_tiles: impl Into<Option<u32>>) -> Self {
+        Self { few_tiles: few_tiles.into(), ..self }
+    }
+
     /// The same with another end of what is seen.
     #[must_use]
     pub fn closed_below(self, closed_below: f32) -> Self {
@@ -86,7 +99,7 @@ impl Default for TilesDesc {
     /// Room for 16.7 million references; a pixel is closed when less than 1/1024 passes.
     fn default() -> Self {
         let (max_reference_bytes, closed_below) = (Self::MAX_REFERENCE_BYTES, 1.0 / 1024.0);
-        Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1 }
+        Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1, few_tiles: None }
     }
 }
 
@@ -108,6 +121,7 @@ pub(crate) struct Tiles {
     usage: Usage<3>,
     /// Whether hair was so dense that what it hides is left out.
     is_dense: bool,
+    is_cpu: bool,
 }
 
 /// References of a pixel with hair, in the mean of a view, from which on hair is dense.
@@ -137,6 +151,7 @@ impl Tiles {
             memory: Memory::new(backend, size, desc, output)?,
             usage: Usage::new(),
             is_dense: false,
+            is_cpu: backend.caps().is_cpu,
         })
     }
 
@@ -177,6 +192,10 @@ impl Tiles {
     fn forget_bindings(&mut self) {
         self.kernels.forget_bindings();
         self.composite.bound.clear();
+    }
+
+    fn few_tiles(&self) -> u32 {
+        self.desc.few_tiles.unwrap_or(if self.is_cpu { 0 } else { TilesDesc::FEW_TILES })
     }
 
     fn skips_hidden(&self) -> bool {
@@ -299,7 +318,7 @@ impl TechniqueInstance for Tiles {
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         let layout = Layout::new(draws)?;
         let skips_hidden = self.skips_hidden();
-        let uniforms = layout.uniforms(view.view, draws, &self.desc, &self.memory, skips_hidden);
+        let uniforms = layout.uniforms(view.view, draws, self, skips_hidden);
         self.memory.uniforms.upload(list, view.index * memory::UNIFORMS_OF_A_VIEW, &uniforms);
         self.memory.clear(list, view.size);
         self.kernels.depth(list, view, &self.memory, targets.depth)?;

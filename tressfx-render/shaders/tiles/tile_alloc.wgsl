@@ -2,7 +2,9 @@
 // Eight lanes a tile, a part of its slices each.
 
 import package::grid::GROUP;
-import package::tiles::{BLEND_GRID, CLASSES, QUARTERS, Queue, ROW, SLICES, STORE_GRIDS, TileInfo, ViewState, tile_count, tiles};
+import package::tiles::{
+    ALL_PARTS, BLEND_GRID, CLASSES, Queue, ROW, SLICES, STORE_GRIDS, TileInfo, ViewState, groups_of_a_tile, tile_count, tiles,
+};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;
@@ -14,9 +16,9 @@ import package::tiles::{BLEND_GRID, CLASSES, QUARTERS, Queue, ROW, SLICES, STORE
 @group(0) @binding(10) var<storage, read_write> infos: array<TileInfo>;
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 
-const PARTS: u32 = 8u;
-const TILES: u32 = GROUP / PARTS;
-const SLICES_OF_A_LANE: u32 = SLICES / PARTS;
+const LANES_OF_A_TILE: u32 = 8u;
+const TILES: u32 = GROUP / LANES_OF_A_TILE;
+const SLICES_OF_A_LANE: u32 = SLICES / LANES_OF_A_TILE;
 // Where sums end, so that they never wrap. There is never room for more than MOST / TILES references.
 const MOST: u32 = 0x40000000u;
 // No round has this reference.
@@ -50,9 +52,10 @@ fn request(count: u32) -> u32 {
     return old;
 }
 
-// The grid that blends holds the quarters of so many tiles more.
+// The grid that blends holds the groups of so many tiles more. It may be longer than needed, where tiles were few before.
 fn lengthen_grid(count: u32) {
-    let size = QUARTERS * (atomicAdd(&queue.size, count) + count);
+    let listed = atomicAdd(&queue.size, count) + count;
+    let size = groups_of_a_tile(listed) * listed;
     atomicMax(&grids[BLEND_GRID], min(size, ROW));
     atomicMax(&grids[BLEND_GRID + 1u], (size + ROW - 1u) / ROW);
     atomicMax(&grids[BLEND_GRID + 2u], 1u);
@@ -130,7 +133,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     // Of the slices before those of this lane, and of all.
     var before = 0u;
     var count = 0u;
-    for (var i = 0u; i < PARTS; i++) {
+    for (var i = 0u; i < LANES_OF_A_TILE; i++) {
         if i == part {
             before = count;
         }
@@ -139,7 +142,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     let load_class = min(firstLeadingBit(max(count, 1u)) / 2u, CLASSES - 1u);
     var position = 0u;
     var place_of_tile = 0u;
-    if part == 0u && info.waiting == (1u << QUARTERS) - 1u {
+    if part == 0u && info.waiting == ALL_PARTS {
         // It is known again when the tile has been blended.
         atomicStore(&state.hidden[tile], 0u);
     }

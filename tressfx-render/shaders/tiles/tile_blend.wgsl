@@ -1,4 +1,4 @@
-// The pixels of a tile, from front to back, one group a quarter of a tile. It goes through the slices in units: as many slices as
+// The pixels of a tile, from front to back, one group a quarter of a tile, or a part of it where few tiles have hair. It goes through the slices in units: as many slices as
 // should fill the list of fragments. The fragments of a unit are sorted by pixel and depth, and blended; pixels that have become
 // opaque take no more; the quarter ends when all are closed.
 //
@@ -16,8 +16,8 @@ import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of, segment_from};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
-    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, QUARTERS, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
+    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
+    WaitingTiles, begin_of, groups_of_a_tile, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
 };
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
@@ -53,13 +53,15 @@ const KEYS: u32 = 16u;
 const SEEN_MARGIN: f32 = 0.25;
 const DEPTH_MARGIN: f32 = 0.01;
 
-// A quarter of a tile.
+// Parts of a quarter of a tile.
 struct Job {
     tile: u32,
     quarter: u32,
     info: TileInfo,
-    // 1 where the tile has its references in this round, and the quarter is still to be blended.
-    is_now: u32,
+    // A bit for each part of the quarter that is to be blended by the group in this round.
+    parts: u32,
+    // 1 for one group of each tile.
+    is_first: u32,
 }
 
 var<workgroup> job: Job;
@@ -84,26 +86,41 @@ var<private> seen: u32;
 fn job_of(group: u32) -> Job {
     // All at once: none waits for another.
     let sizes = queue.sizes;
-    var rest = group / QUARTERS;
+    let groups = groups_of_a_tile(queue.size);
+    var rest = group / groups;
     for (var i = CLASSES; i > 0u; i--) {
         let size = sizes[i - 1u];
         if rest < size {
-            return quarter_of(queue.tiles[(i - 1u) * tile_count() + rest], group % QUARTERS);
+            return job_in(queue.tiles[(i - 1u) * tile_count() + rest], group % groups, groups);
         }
         rest -= size;
     }
-    return Job(NO_TILE, 0u, TileInfo(), 0u);
+    return Job(NO_TILE, 0u, TileInfo(), 0u, 0u);
 }
 
-fn quarter_of(tile: u32, quarter: u32) -> Job {
+// What the group with this number of those of a tile is to blend: a quarter or a part of it.
+fn job_in(tile: u32, number: u32, groups: u32) -> Job {
+    let quarter = number * QUARTERS / groups;
+    let parts = select(PARTS_OF_A_QUARTER, 1u << (number % PARTS), groups > QUARTERS);
     var info: TileInfo;
     info.nearest = bitcast<f32>(atomicLoad(&infos[tile].nearest));
     info.farthest = infos[tile].farthest;
     info.scene = infos[tile].scene;
     info.first = infos[tile].first;
     info.slot = infos[tile].slot;
-    let is_waiting = ((atomicLoad(&infos[tile].waiting) >> quarter) & 1u) == 1u;
-    return Job(tile, quarter, info, u32(is_waiting && info.first >= tiles.first && info.first < tiles.end));
+    let waiting = (atomicLoad(&infos[tile].waiting) >> (PARTS * quarter)) & parts;
+    let is_now = info.first >= tiles.first && info.first < tiles.end;
+    return Job(tile, quarter, info, select(0u, waiting, is_now), u32(number == 0u));
+}
+
+// The part of a quarter in which a pixel is.
+fn part_of_pixel(own: u32) -> u32 {
+    return (own / (2u * QUARTER)) * 2u + (own / 2u) % 2u;
+}
+
+// Whether the pixel of the lane is the group's to blend.
+fn is_own(own: Job, corner: vec2<u32>, lane: u32) -> bool {
+    return lane < PIXELS && ((own.parts >> part_of_pixel(lane)) & 1u) == 1u && all(pixel_at(corner, lane) < view.size);
 }
 
 fn pixel_at(corner: vec2<u32>, own: u32) -> vec2<u32> {
@@ -229,10 +246,8 @@ fn see_mean(unit: Unit, pixel: u32) {
 
 // Where the quarter begins, and what lies before it.
 fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
-    let pixel = pixel_at(corner, lane);
-    let is_inside = lane < PIXELS && all(pixel < view.size);
-    if is_inside {
-        scene[lane] = scene_nearness(pixel);
+    if is_own(own, corner, lane) {
+        scene[lane] = scene_nearness(pixel_at(corner, lane));
     }
     for (var i = lane; i < SLICES; i += LANES) {
         bounds[i + 1u] = min(bins[i * tile_count() + own.tile] - tiles.first, tiles.capacity);
@@ -255,11 +270,11 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
     if lane < PIXELS {
         empty_mean(lane);
     }
-    if is_inside {
+    if is_own(own, corner, lane) {
         atomicOr(&open, 1u << lane);
     }
     if lane == 0u {
-        plan = unit_from(0u, SLICES, FIRST_RATE);
+        plan = unit_from(0u, SLICES, FIRST_RATE * f32(countOneBits(own.parts)) / f32(PARTS));
     }
 }
 
@@ -301,14 +316,14 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
     return front;
 }
 
-fn blend_quarter(own: Job, lane: u32) {
+fn blend_parts(own: Job, lane: u32) {
     let tile = vec2(own.tile % tile_columns(), own.tile / tile_columns());
     let corner = TILE * tile + QUARTER * vec2(own.quarter % 2u, own.quarter / 2u);
     prepare(own, corner, lane);
     let front = blend_units(own, corner, lane);
     let is_done = workgroupUniformLoad(&seen_to) >= 0.0 || !is_cut(own.info);
     let pixel = pixel_at(corner, lane);
-    if is_done && lane < PIXELS && all(pixel < view.size) {
+    if is_done && is_own(own, corner, lane) {
         let color = vec4(front.color, 1.0 - passes(front));
         let place = resolved_index(own.info.slot - 1u, pixel);
         @if(!hair_output) {
@@ -327,7 +342,7 @@ fn blend_quarter(own: Job, lane: u32) {
         atomicAdd(&state.counters.pixels_with_hair, atomicLoad(&hairy_pixels));
         atomicAdd(&state.counters.fragments, atomicLoad(&blended_fragments));
         atomicMax(&state.hidden[own.tile], hidden_by());
-        atomicAnd(&infos[own.tile].waiting, ~(1u << own.quarter));
+        atomicAnd(&infos[own.tile].waiting, ~(own.parts << (PARTS * own.quarter)));
     }
 }
 
@@ -346,7 +361,7 @@ fn count_dropped(group: u32) {
         state.counters.wanted = max(state.counters.wanted, queue.references);
         atomicAdd(&state.counters.dropped, max(queue.references, tiles.covered) - tiles.covered);
     }
-    if tiles.end != 0xffffffffu && job.quarter == 0u && job.is_now == 1u {
+    if tiles.end != 0xffffffffu && job.is_first == 1u && job.parts != 0u {
         let end = min(bins[(SLICES - 1u) * tile_count() + job.tile], tiles.covered) - tiles.first;
         atomicAdd(&state.counters.dropped, max(end, tiles.capacity) - tiles.capacity);
     }
@@ -361,7 +376,7 @@ fn tile_blend(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         count_dropped(index);
     }
     let own = workgroupUniformLoad(&job);
-    if own.is_now == 1u {
-        blend_quarter(own, lane);
+    if own.parts != 0u {
+        blend_parts(own, lane);
     }
 }

@@ -5,7 +5,7 @@
 import package::grid::GROUP;
 import package::screen::{scene_nearness, view};
 import package::tile::TILE;
-import package::tiles::{NOTHING_HIDDEN, QUARTERS, TileInfo, ViewState, tile_columns, tile_count, tiles};
+import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, tile_columns, tile_count, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
@@ -62,6 +62,6 @@ fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         if tiles.skips_hidden == 1u {
             seen = max(scene, bitcast<f32>(~atomicLoad(&hidden[own])));
         }
-        infos[tile] = TileInfo(0.0, seen, scene, 0u, (1u << QUARTERS) - 1u, 0u);
+        infos[tile] = TileInfo(0.0, seen, scene, 0u, ALL_PARTS, 0u);
     }
 }

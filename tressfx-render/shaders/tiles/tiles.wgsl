@@ -11,6 +11,12 @@ const CLASSES: u32 = 8u;
 const MAX_SECTIONS: u32 = 64u;
 // Quarters of a tile, row by row: each is blended by a group.
 const QUARTERS: u32 = 4u;
+// Parts of a quarter, row by row, of 2 x 2 pixels. Where few tiles have hair, each is blended by a group, so that there are more groups,
+// each of which has less to do one after the other.
+const PARTS: u32 = 4u;
+// A bit for each part of a tile, those of the first quarter first.
+const ALL_PARTS: u32 = 0xffffu;
+const PARTS_OF_A_QUARTER: u32 = 0xfu;
 // Bits of a reference: whether it comes from the nearest slice that the segment touches in the tile; whether the segment touches
 // the first quarter of the tile, with those of the other quarters above; and the segment's first vertex.
 const IS_NEAREST: u32 = 0x80000000u;
@@ -43,8 +49,9 @@ struct TilesUniform {
     skips_hidden: u32,
     // Tiles whose resolved pixels have room.
     slots: u32,
-    unused_1: u32,
-    unused_2: u32,
+    // Tiles that are few.
+    few: u32,
+    unused: u32,
     // The grids of `tile_bin` and `tile_alloc`.
     bin_groups: vec4<u32>,
     alloc_groups: vec4<u32>,
@@ -74,7 +81,7 @@ struct TileInfo {
     scene: f32,
     // The first reference.
     first: u32,
-    // A bit a quarter that is still to be blended.
+    // A bit a part that is still to be blended.
     waiting: u32,
     // Where its resolved pixels are, and one; 0 until the tile is among those that the composite draws.
     slot: u32,
@@ -119,6 +126,11 @@ struct WaitingTiles {
     unused: array<u32, 2>,
     sizes: array<u32, CLASSES>,
     tiles: array<u32>,
+}
+
+// Groups that blend each of so many tiles.
+fn groups_of_a_tile(count: u32) -> u32 {
+    return select(QUARTERS, QUARTERS * PARTS, count <= tiles.few);
 }
 
 // Whether hair behind some nearness was left out, though the scene shows it.

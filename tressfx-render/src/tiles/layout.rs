@@ -5,9 +5,8 @@ use tressfx_core::gpu_struct;
 use tressfx_core::pass::Grid;
 use tressfx_core::view::View;
 
-use super::TilesDesc;
+use super::Tiles;
 use super::kernels::{alloc_grid, bin_grid};
-use super::memory::Memory;
 use crate::strands::SectionDraw;
 
 /// Sections that can be drawn together.
@@ -57,10 +56,10 @@ gpu_struct! {
         pub skips_hidden: u32,
         /// Tiles whose resolved pixels have room.
         pub slots: u32,
+        /// Tiles that are few: each of them is blended by more groups.
+        pub few: u32,
         /// Nothing.
-        pub unused_1: u32,
-        /// Nothing.
-        pub unused_2: u32,
+        pub unused: u32,
         /// Groups of `tile_bin`, and nothing.
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
@@ -117,10 +116,10 @@ impl Layout {
         &self,
         view: &View,
         draws: &[SectionDraw],
-        desc: &TilesDesc,
-        memory: &Memory,
+        tiles: &Tiles,
         skips_hidden: bool,
     ) -> Vec<TilesUniform> {
+        let (desc, memory) = (&tiles.desc, &tiles.memory);
         let references = &memory.references;
         let [nearest, farthest] = distances(view, draws);
         let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
@@ -138,8 +137,8 @@ impl Layout {
             window: references.window(),
             skips_hidden: skips_hidden.into(),
             slots: memory.screen.resolved.slots,
-            unused_1: 0,
-            unused_2: 0,
+            few: tiles.few_tiles(),
+            unused: 0,
             bin_groups: padded(bin_grid(self.segments)),
             alloc_groups: padded(alloc_grid(view.size())),
             layouts: self.sections,
