@@ -1,11 +1,13 @@
 //! What is left out of a frame: sections that no view can see, on the CPU, before anything is written.
 
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use std::array;
+
+use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::strands::Strands;
 use tressfx_core::view::View;
 
-use crate::lights::LightPlace;
+use crate::lights::{LightPlace, Lights};
 use crate::strands::SectionDraw;
 use crate::views::ViewDraw;
 
@@ -15,11 +17,14 @@ const STRETCH: f32 = 1.5;
 /// Pixels beyond the picture in which something is drawn that reaches into it.
 const MARGIN: f64 = 4.0;
 
-/// Sky is taken by hair that is nearer than so many times the radii of both: beyond that it hides less than 2 % of it.
-const SKY: f64 = 2.0;
+/// Sky is taken by hair that is nearer than twice the radii of both: beyond that it hides less than 2 % of it. This is the square.
+const SKY_SQUARE: f32 = 4.0;
 
 /// Of the square of a distance.
 const ROUNDING: f64 = 1e-12;
+
+/// The same of floats of 32 bits, and more than that.
+const COARSE: f32 = 1e-5;
 
 /// What a frame has drawn and left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -67,6 +72,9 @@ impl Ball {
 
     /// One that holds all of these, if there are any.
     fn around(balls: &[Self]) -> Option<Self> {
+        if let Some(endless) = balls.iter().find(|ball| ball.radius == f32::INFINITY) {
+            return Some(*endless);
+        }
         let reach = |ball: &Self| DVec3::splat(ball.radius.into());
         let low = balls.iter().map(|ball| ball.center.as_dvec3() - reach(ball)).reduce(DVec3::min)?;
         let high = balls.iter().map(|ball| ball.center.as_dvec3() + reach(ball)).reduce(DVec3::max)?;
@@ -82,12 +90,24 @@ impl Ball {
         !planes.iter().any(|plane| plane.dot(center) < -radius)
     }
 
+    /// Whether it may take light from another one, so far as four lights at once can be asked in little precision: false where it does not.
+    fn may_shade(&self, other: &Self, light: &Casting) -> bool {
+        let (apart, radii) = (self.center - other.center, self.radius + other.radius);
+        let (square, most) = (apart.length_squared() * (1.0 - COARSE), radii * radii);
+        // What is no number is not known to be small.
+        let reaches = |[x, y, z]: &[Vec4; 3]| {
+            let along = (apart.x * *x + apart.y * *y + apart.z * *z).max(Vec4::ZERO);
+            !(Vec4::splat(square) - along * along).cmpgt(Vec4::splat(most)).all()
+        };
+        light.has_point || light.has_sky && square <= SKY_SQUARE * most || light.towards.iter().any(reaches)
+    }
+
     /// Whether it may take light from another one.
     fn shades(&self, other: &Self, light: &Casting) -> bool {
         let apart = self.center.as_dvec3() - other.center.as_dvec3();
         let radii = f64::from(self.radius) + f64::from(other.radius);
         let (square, most) = (apart.length_squared(), radii * radii);
-        light.has_sky && square <= SKY * SKY * most
+        light.has_sky && square <= f64::from(SKY_SQUARE) * most
             || light.from.iter().any(|from| match from {
                 // The distance from the way of the light, and what rounding may make of it.
                 From::Afar(towards) => square - apart.dot(*towards).max(0.0).powi(2) <= most + square * ROUNDING,
@@ -113,22 +133,37 @@ enum From {
 #[derive(Debug, Default)]
 struct Casting {
     has_sky: bool,
+    has_point: bool,
     from: Vec<From>,
+    /// The directions of lights far away, four at once: all x, all y and all z. Where there are fewer, some are of length 0.
+    towards: Vec<[Vec4; 3]>,
 }
 
 impl Casting {
-    fn of(views: &[ViewDraw]) -> Self {
-        let has_sky = views.iter().any(|view| view.lights.sky != Vec3::ZERO || view.lights.ground != Vec3::ZERO);
-        let lights = views.iter().flat_map(|view| &view.lights.lights).filter(|light| light.casts);
+    fn of<'a>(all: impl Iterator<Item = &'a Lights> + Clone) -> Self {
+        let has_sky = all.clone().any(|lights| lights.sky != Vec3::ZERO || lights.ground != Vec3::ZERO);
+        let lights = all.flat_map(|lights| &lights.lights).filter(|light| light.casts);
         let from = lights.map(|light| match light.place {
             LightPlace::Directional { towards } => From::Afar(towards.as_dvec3().normalize_or(DVec3::Y)),
             LightPlace::Point { position, .. } => From::Point(position.as_dvec3()),
         });
-        Self { has_sky, from: from.collect() }
+        let from: Vec<From> = from.collect();
+        let afar = |from: &From| if let From::Afar(towards) = from { Some(towards.as_vec3()) } else { None };
+        let towards: Vec<Vec3> = from.iter().filter_map(afar).collect();
+        let axis = |four: &[Vec3], axis: usize| {
+            Vec4::from_array(array::from_fn(|i| four.get(i).map_or(0.0, |towards| towards[axis])))
+        };
+        let four_at_once = |four: &[Vec3]| [0, 1, 2].map(|i| axis(four, i));
+        Self {
+            has_sky,
+            has_point: towards.len() < from.len(),
+            towards: towards.chunks(4).map(four_at_once).collect(),
+            from,
+        }
     }
 }
 
-/// The planes beyond which a view sees nothing: the sides of the picture with a margin, and the near plane.
+/// The planes beyond which a view sees nothing: the near plane, behind which most is that is not seen, and the sides of the picture with a margin.
 fn planes(view: &View) -> [DVec4; 5] {
     let clip: DMat4 = view.projection_matrix().as_dmat4() * view.view_matrix().as_dmat4();
     let w = clip.row(3);
@@ -141,7 +176,7 @@ fn planes(view: &View) -> [DVec4; 5] {
         DepthOrder::Reverse => w - z,
     };
     // Distances from them are in the unit of the world.
-    [wide + x, wide - x, high + y, high - y, near].map(|plane| plane / plane.truncate().length())
+    [near, wide + x, wide - x, high + y, high - y].map(|plane| plane / plane.truncate().length())
 }
 
 /// The sections that a view may see, then those that may throw shadows on these, and how many of each there are. Those without segments are left out.
@@ -163,12 +198,62 @@ pub(crate) fn split<'a>(
     }
     let (sections, hidden) = (kept.len(), unseen.len());
     if let Some(around) = Ball::around(&seen).filter(|_| has_shadows) {
-        let light = Casting::of(views);
+        let light = Casting::of(views.iter().map(|view| view.lights));
         // Most shade nothing of what is seen.
-        let near = unseen.into_iter().filter(|(_, ball)| ball.shades(&around, &light));
+        let near =
+            unseen.into_iter().filter(|(_, ball)| ball.may_shade(&around, &light) && ball.shades(&around, &light));
         let shading = near.filter(|(_, ball)| seen.iter().any(|other| ball.shades(other, &light)));
         kept.extend(shading.map(|(draw, _)| *draw));
     }
     let shading = kept.len() - sections;
     (kept, Drawn { sections, unseen: hidden, shading })
+}
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::hash::hash;
+
+    use super::*;
+    use crate::lights::Light;
+
+    /// Random numbers from -1 to 1, by their place.
+    fn random(place: u32) -> f32 {
+        2.0 * hash(place) as f32 - 1.0
+    }
+
+    fn ball(place: u32) -> Ball {
+        let center = 20.0 * Vec3::new(random(place), random(place + 1), random(place + 2));
+        Ball { center, radius: 1.5 + random(place + 3) }
+    }
+
+    fn casting(lights: u32, has_sky: bool) -> Casting {
+        let towards = |i: u32| Vec3::new(random(7 * i + 1), random(7 * i + 2), random(7 * i + 3));
+        let lights = (0..lights).map(|i| Light::directional(towards(i), Vec3::ONE)).collect();
+        let sky = if has_sky { Vec3::ONE } else { Vec3::ZERO };
+        Casting::of(std::iter::once(&Lights { sky, ground: Vec3::ZERO, lights }))
+    }
+
+    #[test]
+    fn what_shades_is_never_left_out_by_the_coarse_test() {
+        for (lights, has_sky) in [(0, true), (1, false), (3, true), (6, false), (16, true)] {
+            let light = casting(lights, has_sky);
+            let pairs = || (0..20_000).map(|i| (ball(100 + 8 * i), ball(104 + 8 * i)));
+            let [mut shading, mut kept] = [0, 0];
+            for (ball, other) in pairs() {
+                let (shades, may) = (ball.shades(&other, &light), ball.may_shade(&other, &light));
+                assert!(may || !shades, "{ball:?} {other:?}");
+                shading += u32::from(shades);
+                kept += u32::from(may);
+            }
+            assert!(shading > 100 && kept < shading + 20, "{lights} lights: {shading} of {kept} shade");
+        }
+    }
+
+    #[test]
+    fn what_reaches_without_end_may_be_shaded_by_all() {
+        let endless = Ball { center: Vec3::ONE, radius: f32::INFINITY };
+        let around = Ball::around(&[ball(1), endless, ball(9)]).unwrap();
+        let light = casting(1, false);
+        assert!((0..50).all(|i| ball(8 * i).may_shade(&around, &light) && ball(8 * i).shades(&around, &light)));
+    }
 }

@@ -180,8 +180,14 @@ impl Clock {
         }
         if let Some([last, _]) = self.still.filter(|_| dt > 0.0 && dropped == 0.0) {
             self.still = Some([dt, last]);
-            return;
+        } else {
+            self.come_to_rest(dt, dropped, count, head);
         }
+    }
+
+    /// The frames in which a head that stands still did not before, and those of no length. Apart from those that follow, in a function that need not save registers.
+    #[inline(never)]
+    fn come_to_rest(&mut self, dt: f64, dropped: f64, count: u32, head: Pose) {
         self.settle();
         if count > 0 && self.simulated_head != head {
             self.simulated_head = head;

@@ -173,6 +173,12 @@ impl HairSim {
             self.clock.pass(input.dt);
             return Ok(StepReport { asleep: true, ..StepReport::default() });
         }
+        Ok(self.simulate(list, input))
+    }
+
+    /// A frame in which it is awake. Apart from `step`, which a thousand that sleep run too: its registers need not be saved for them.
+    #[inline(never)]
+    fn simulate(&mut self, list: &mut PassList, input: &StepInput) -> StepReport {
         let plan = self.clock.advance_along(input.dt, input.path, input.head);
         if let Some(rotation) = plan.reset {
             self.record_reset(list, rotation);
@@ -192,7 +198,7 @@ impl HairSim {
             let place = last.map_or(ALONE, |last| FIRST + last.len() - 1);
             self.sections.iter().for_each(|section| section.record(list, Solver::FRAME_END, place));
         }
-        Ok(report)
+        report
     }
 
     fn check(&self, input: &StepInput) -> Result<(), SimError> {
