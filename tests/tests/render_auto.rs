@@ -114,3 +114,25 @@ fn its_settings_change_between_frames() {
         assert!(screen.renderer.retune(&mut *screen.backend, technique).is_err());
     }
 }
+
+#[test]
+fn more_sections_than_tiles_can_draw_are_for_lists_at_once() {
+    let dense = Groom::wavy(1500, 16, 3, material());
+    let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
+    let Some(mut screen) = screen(with(auto())) else { return };
+    let small: Vec<Groom> = (0..70).map(|seed| Groom::wavy(20, 6, seed, material())).collect();
+    let many: Vec<&Groom> = small.iter().chain([&dense]).collect();
+    let expected = lists.hair(&many);
+    for round in 0..2 {
+        for _ in 0..60 {
+            frame(&mut screen, &dense);
+        }
+        assert!(screen.renderer.uses_tiles(), "dense hair is for tiles, round {round}");
+        for _ in 0..40 {
+            let picture = screen.hair(&many);
+            screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+            assert!(!screen.renderer.uses_tiles());
+            assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
+        }
+    }
+}

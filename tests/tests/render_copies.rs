@@ -5,12 +5,15 @@ mod support;
 use glam::Vec3;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Groom, Screen, Setup};
+use tressfx_core::backend::{Backend, Format, TextureDesc};
 use tressfx_core::hash::hash;
+use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
-use tressfx_core::strand_buffers::StrandShape;
+use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
+use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    AutoDesc, Fill, Light, Lod, Material, PpllDesc, SectionDraw, ShadowDesc, ShortCutDesc, Technique, TilesDesc,
-    ViewDraw,
+    AutoDesc, Fill, HairRenderer, Light, Lights, Lod, Material, PpllDesc, RenderDesc, SectionDraw, ShadedStrands,
+    ShadowDesc, ShortCutDesc, Targets, Technique, TilesDesc, ViewDraw,
 };
 
 use support::{gpu, screen};
@@ -133,6 +136,36 @@ fn copies_throw_the_shadow_of_strands_and_take_no_memory() {
         bytes
     });
     assert_eq!(bytes[0], bytes[1], "copies take no memory beside the strands");
+}
+
+#[test]
+fn more_vertices_than_can_be_counted_are_refused() {
+    let mut caps = NullBackend::default().caps().clone();
+    (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (1 << 40, 1 << 40);
+    let mut backend = NullBackend::new(caps);
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).copies(true);
+    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+    let mut texture = |format| backend.create_texture(&TextureDesc::new("test", [64, 64], format)).unwrap();
+    let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
+    let (groom, lights) = (groom(), Lights::default());
+    let view = Camera::around(&[Vec3::ZERO, Vec3::ONE], [64, 64]).view([64, 64]).unwrap();
+    for (guides, copies, can_be_drawn) in [(1 << 20, 21, true), (1 << 20, 22, false), (1 << 24, 32, false)] {
+        let shape = StrandShape { guides, follows: 0, vertices: 32 };
+        let buffers = StrandBuffers::new(&mut backend, shape, Vec3::ZERO).unwrap();
+        let section = ShadedStrands::new(&mut backend, buffers, groom.info.clone()).unwrap();
+        let material = material().with(|m| m.copies = copies);
+        let draw = SectionDraw::new(&section, &material, Pose::IDENTITY);
+        let room = renderer.grow_to_predicted(&mut backend, &view, &[draw]).map_err(|error| error.to_string());
+        let views = [ViewDraw::new(&view, &lights, targets)];
+        let drawn = renderer.draw(&mut PassList::new(), &views, &[draw]).map_err(|error| error.to_string());
+        let vertices = u64::from(guides) * 32 * u64::from(copies);
+        for result in [room, drawn] {
+            match result {
+                Ok(()) => assert!(can_be_drawn, "{vertices}"),
+                Err(error) => assert!(!can_be_drawn && error.contains(&vertices.to_string()), "{vertices}: {error}"),
+            }
+        }
+    }
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::renderer::Targets;
 use crate::resolved::Resolved;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
-use crate::tiles::{Tiles, TilesDesc};
+use crate::tiles::{self, MAX_SECTIONS, MAX_VERTICES, Tiles, TilesDesc};
 use crate::views::BoundView;
 
 /// Measurements in a row that must speak for the other technique before it takes over.
@@ -32,6 +32,9 @@ const FRAMES: u64 = 16;
 
 /// Lists come back where hair has less than this share of what tiles take over at.
 const BACK: f64 = 0.7;
+
+/// Bytes that tiles keep of a vertex in each of two buffers.
+const BYTES_OF_A_VERTEX: u64 = 16;
 
 /// Lists or tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,6 +115,10 @@ pub(crate) struct Auto {
     settled_at: u64,
     /// Whether the technique that is not in use still has its memory.
     has_surplus: bool,
+    /// Vertices that tiles can draw on the device.
+    most_vertices: u64,
+    /// Whether tiles could draw the newest frame.
+    tiles_can_draw: bool,
     /// The largest of the views.
     predicted: Predicted,
     /// Fragments that lists have measured, of those that were predicted: a body hides the others.
@@ -120,10 +127,14 @@ pub(crate) struct Auto {
 
 impl Auto {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &AutoDesc, size: [u32; 2], output: Output) -> Result<Self> {
+        let caps = backend.caps();
+        let bytes = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
         Ok(Self {
             desc: *desc,
             size,
             output,
+            most_vertices: MAX_VERTICES.min(bytes / BYTES_OF_A_VERTEX),
+            tiles_can_draw: false,
             lists: Ppll::new(backend, &desc.lists, size, output)?,
             tiles: None,
             uses_tiles: false,
@@ -152,7 +163,7 @@ impl Auto {
 
     /// Whether a measurement speaks for the technique that is not in use.
     fn speaks_for_other(&mut self, backend: &dyn Backend, counters: &Counters) -> bool {
-        if backend.caps().is_cpu && !self.desc.tiles_on_cpu {
+        if (backend.caps().is_cpu && !self.desc.tiles_on_cpu) || (!self.uses_tiles && !self.tiles_can_draw) {
             return false;
         }
         if !self.uses_tiles && self.predicted.fragments > 0.0 {
@@ -183,6 +194,20 @@ impl Auto {
         Ok(())
     }
 
+    /// Whether tiles can draw as many sections and vertices as these have.
+    fn can_tiles_draw(&self, draws: &[SectionDraw]) -> bool {
+        draws.len() <= MAX_SECTIONS && tiles::vertices(draws) <= self.most_vertices
+    }
+
+    /// Goes back to lists at once where tiles cannot draw what there is.
+    fn leave_tiles_for(&mut self, draws: &[SectionDraw]) {
+        self.tiles_can_draw = self.can_tiles_draw(draws);
+        if self.uses_tiles && !self.tiles_can_draw {
+            self.uses_tiles = false;
+            (self.votes, self.has_surplus, self.settled_at) = (0, true, self.frame + LATENCY);
+        }
+    }
+
     /// Frees what the technique that is not in use has kept for its last frames.
     fn release_other(&mut self, backend: &mut dyn Backend) -> Result<()> {
         match &mut self.tiles {
@@ -206,10 +231,15 @@ impl TechniqueInstance for Auto {
     }
 
     fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
-        self.active().predicted(view, draws)
+        if self.can_tiles_draw(draws) {
+            self.active().predicted(view, draws)
+        } else {
+            self.lists.predicted(view, draws)
+        }
     }
 
     fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()> {
+        self.leave_tiles_for(draws);
         self.active_mut().reserve(backend, wanted, draws)
     }
 
@@ -260,13 +290,14 @@ impl TechniqueInstance for Auto {
     }
 
     fn check(&self, draws: &[SectionDraw]) -> Result<()> {
-        self.active().check(draws)
+        if self.can_tiles_draw(draws) { self.active().check(draws) } else { self.lists.check(draws) }
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.frame += 1;
+        self.leave_tiles_for(draws);
         if self.frame % FRAMES == 1 {
-            self.predicted = Predicted { vertices: crate::tiles::vertices(draws), ..Predicted::default() };
+            self.predicted = Predicted { vertices: tiles::vertices(draws), ..Predicted::default() };
         }
         self.active_mut().begin(list, views, draws);
     }

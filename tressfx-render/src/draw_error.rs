@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use tressfx_core::error::Error;
+use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::view::PoseError;
 
 use crate::copies::MAX_COPIES;
@@ -76,6 +77,9 @@ pub enum DrawError {
         /// How far they are moved, m.
         spread: f32,
     },
+    /// A section has too many vertices to be counted by the GPU, its copies among them.
+    #[error("hair.render: a section of {0} vertices, with its copies, there can be {MAX_VERTICES}")]
+    Vertices(u64),
     /// A material asks for copies of strands, of which the renderer knows nothing.
     #[error("hair.render: a material has `copies`, the renderer was made without them (`RenderDesc::copies`)")]
     Copies,
@@ -100,6 +104,9 @@ pub enum DrawError {
     Backend(#[from] Error),
 }
 
+/// The most vertices of a section, with its copies: fragment shaders draw each of its segments as two triangles.
+const MAX_VERTICES: u64 = u32::MAX as u64 / 6;
+
 /// Whether a section can be drawn like this.
 pub(crate) fn check_section(draw: &SectionDraw) -> Result<(), DrawError> {
     draw.pose.validate()?;
@@ -107,6 +114,11 @@ pub(crate) fn check_section(draw: &SectionDraw) -> Result<(), DrawError> {
     let can_be_drawn = (1..=MAX_COPIES).contains(&copies) && spread >= 0.0 && spread.is_finite();
     if !can_be_drawn {
         return Err(DrawError::CopyCount { copies, spread });
+    }
+    let StrandShape { guides, follows, vertices } = draw.strands.buffers.shape;
+    let vertices = [1 + follows, copies, vertices].into_iter().map(u64::from).fold(guides.into(), u64::saturating_mul);
+    if vertices > MAX_VERTICES {
+        return Err(DrawError::Vertices(vertices));
     }
     let Lod { share, step } = draw.lod;
     if draw.lod.is_valid() { Ok(()) } else { Err(DrawError::Lod { share, step }) }

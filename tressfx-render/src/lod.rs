@@ -153,7 +153,7 @@ impl LodDesc {
     /// What to draw of a section for a view. All of it where the eye is in the groom.
     pub fn choose(&self, view: &View, draw: &SectionDraw) -> Lod {
         let lens = view.lens();
-        let (middle, radius) = draw.strands.sphere;
+        let (middle, radius) = draw.sphere();
         let distance = -(lens.to_eye * draw.pose.matrix()).transform_point3(middle).z - radius;
         let focal = lens.focal.abs().max_element();
         if lens.is_perspective && distance <= lens.near {

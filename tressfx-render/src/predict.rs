@@ -33,21 +33,22 @@ pub(crate) fn tiles(view: &View, draws: &[SectionDraw]) -> u64 {
         let ends = draw.strands.info.sample.iter().flat_map(|(ends, _)| ends);
         let mut bounds: Option<[Vec2; 2]> = None;
         for end in ends.map(|&end| to_eye.transform_point3(end)).filter(|end| end.is_finite()) {
-            let Some(pixel) = on_screen(view, end) else { return all };
+            let Some((pixel, scale)) = on_screen(view, end) else { return all };
+            let aside = draw.farthest_copy() * view.lens().focal.abs() * scale;
             let [low, high] = bounds.unwrap_or([pixel; 2]);
-            bounds = Some([low.min(pixel), high.max(pixel)]);
+            bounds = Some([low.min(pixel - aside), high.max(pixel + aside)]);
         }
         bounds.map_or(0, |bounds| tiles_in(bounds, view.size()))
     };
     draws.iter().map(of_section).sum::<u64>().min(all)
 }
 
-/// The pixel of a point in the space of the eye; none where it is not beyond the near plane.
-fn on_screen(view: &View, end: Vec3) -> Option<Vec2> {
+/// The pixel of a point in the space of the eye, and by how much what is there is made smaller; none where it is not beyond the near plane.
+fn on_screen(view: &View, end: Vec3) -> Option<(Vec2, f32)> {
     let lens = view.lens();
     let scale = if lens.is_perspective { -1.0 / end.z } else { 1.0 };
     let moved = Vec2::new(lens.focal.x * end.x, -(lens.skew * end.x + lens.focal.y * end.y));
-    (-end.z >= lens.near).then(|| lens.center + moved * scale)
+    (-end.z >= lens.near).then(|| (lens.center + moved * scale, scale))
 }
 
 /// The tiles of a box of pixels that is made larger by [`SWING`].

@@ -251,12 +251,13 @@ impl HairRenderer {
     /// jumps, and whenever sections come: tiles draw no more vertices than there is room for.
     ///
     /// # Errors
-    /// What the backend says when it cannot make a buffer of that size; the pool is unchanged then.
+    /// What the backend says when it cannot make a buffer of that size, and sections that cannot be drawn; the pool is unchanged then.
     pub fn grow_to_predicted(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         if view.is_empty() {
             return Ok(());
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
+        draws.iter().try_for_each(check_section).map_err(|error| Error::rule("hair.render", error.to_string()))?;
         let wanted = self.order.predicted(view, &draws);
         self.owner.change(backend, |backend| self.order.reserve(backend, wanted, &draws))
     }

@@ -343,6 +343,12 @@ impl<'a> SectionDraw<'a> {
         self.copied(positions).into_iter().enumerate().map(moved).collect()
     }
 
+    /// A point and a distance from it within which what is drawn is in its rest pose, relative to the centre of the buffers.
+    pub(crate) fn sphere(&self) -> (Vec3, f32) {
+        let (middle, radius) = self.strands.sphere;
+        (middle, radius + self.farthest_copy())
+    }
+
     /// How far a copy may be from its strand, in the unit of the positions.
     pub(crate) fn farthest_copy(&self) -> f32 {
         let has_any = self.material.copies > 1;

@@ -31,7 +31,7 @@ use memory::Memory;
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
-pub(crate) use layout::vertices;
+pub(crate) use layout::{MAX_SECTIONS, MAX_VERTICES, vertices};
 
 /// Exact order in tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]

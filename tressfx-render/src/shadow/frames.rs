@@ -132,7 +132,8 @@ fn frame(desc: &ShadowDesc, index: u32, axes: Mat4, kind: u32, nearest: f32) -> 
 
 /// The middle of all hair in its rest pose, and the distance of what is farthest from it.
 fn sphere_of(draws: &[SectionDraw]) -> (Vec3, f32) {
-    let spheres = || draws.iter().map(|draw| (draw.pose.transform(draw.strands.sphere.0), draw.strands.sphere.1));
+    let placed = |draw: &SectionDraw| (draw.pose.transform(draw.sphere().0), draw.sphere().1);
+    let spheres = || draws.iter().map(placed);
     let middle = spheres().map(|(middle, _)| middle).sum::<Vec3>() / draws.len().max(1) as f32;
     (middle, spheres().map(|(at, radius)| at.distance(middle) + radius).fold(0.0, f32::max))
 }

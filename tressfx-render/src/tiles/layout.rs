@@ -13,7 +13,7 @@ use crate::strands::SectionDraw;
 pub(crate) const MAX_SECTIONS: usize = 64;
 
 /// Vertices that can be drawn together: a reference has 27 bits for one.
-const MAX_VERTICES: u64 = 1 << 27;
+pub(crate) const MAX_VERTICES: u64 = 1 << 27;
 
 /// Slices of depth.
 pub(crate) const SLICES: u32 = 64;
@@ -156,7 +156,7 @@ fn padded(Grid([x, y, z]): Grid) -> [u32; 4] {
 fn distances(view: &View, draws: &[SectionDraw]) -> [f32; 2] {
     let lens = view.lens();
     let of = |draw: &SectionDraw| {
-        let (center, radius) = draw.strands.sphere;
+        let (center, radius) = draw.sphere();
         let distance = -(lens.to_eye * draw.pose.matrix()).transform_point3(center).z;
         [distance - radius * SWING, distance + radius * SWING]
     };
