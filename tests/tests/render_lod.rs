@@ -4,8 +4,9 @@ mod support;
 
 use glam::{DVec3, Vec3};
 use tressfx_conformance::render::{Groom, Picture, Screen};
+use tressfx_conformance::run_and_read;
 use tressfx_core::backend::DepthOrder;
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::view::{Camera, Pose, View};
 use tressfx_render::{
     Counters, DrawError, Lod, LodDesc, Material, PpllDesc, SectionDraw, ShadowDesc, ShortCutDesc, Technique, TilesDesc,
@@ -57,6 +58,29 @@ fn what_is_left_out_might_as_well_not_be_there() {
             let expected = screen.hair(&[&thinned(&groom, strands, step)]);
             assert!(expected.pixels().iter().any(|pixel| pixel.w > 0.0), "there is hair");
             assert!(found.bytes == expected.bytes, "{technique:?}, {strands} strands in steps of {step}");
+        }
+    }
+}
+
+#[test]
+fn a_section_whose_detail_changes_between_frames_is_drawn_as_a_new_one() {
+    let groom = Groom::wavy(STRANDS, VERTICES, 3, material());
+    for technique in techniques() {
+        let Some(mut screen) = screen(|setup| setup.technique = technique) else { return };
+        let lods = [(0.1, 8), (1.0, 1), (0.3, 2), (1.0, 4)].map(|(share, step)| Lod { share, step });
+        let expected = lods.map(|lod| screen.hair(&[&Groom { lod, ..groom.clone() }]).bytes);
+        let mut list = PassList::new();
+        let section = screen.section(&mut list, &groom);
+        let (targets, view, lights) = (screen.targets(), screen.view, screen.lights.clone());
+        for (lod, expected) in lods.into_iter().zip(expected) {
+            let clear = RasterPass::new("test.clear").color(targets.color, Load::Clear([0.0; 4]));
+            list.raster(clear.depth(targets.depth, Load::Clear(view.depth().far())));
+            let draw = SectionDraw::new(&section, &groom.material, groom.pose).lod(lod);
+            screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
+            let picture = list.read_texture(targets.color);
+            let found = run_and_read(&mut *screen.backend, &list, picture);
+            assert!(found == expected, "{technique:?}, {lod:?}");
+            list = PassList::new();
         }
     }
 }
