@@ -89,22 +89,24 @@ fn what_is_left_out_makes_room_and_rounds_do_not_matter() {
 }
 
 #[test]
-fn it_is_done_where_hair_is_dense() {
+fn it_is_done_where_hair_is_dense_in_more_than_few_tiles() {
     let groom = Groom::wavy(12_000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)));
-    let technique = TilesDesc::default();
-    // The hair fills the picture.
-    let close = |setup: &mut Setup| {
-        (setup.technique, setup.size) = (technique.into(), [61, 45]);
-        setup.camera.fov *= 0.3;
-    };
-    let Some(mut screen) = screen(close) else { return };
-    let mut wanted = Vec::new();
-    let first = screen.hair(&[&groom]);
-    for _ in 0..3 {
-        let picture = screen.hair(&[&groom]);
-        screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
-        assert!(picture.bytes == first.bytes);
-        wanted.push(picture.counters.wanted);
+    // The hair fills the picture, 48 tiles.
+    for (few_tiles, is_done) in [(0, true), (47, true), (48, false)] {
+        let close = |setup: &mut Setup| {
+            (setup.technique, setup.size) = (TilesDesc::default().few_tiles(few_tiles).into(), [61, 45]);
+            setup.camera.fov *= 0.3;
+        };
+        let Some(mut screen) = screen(close) else { return };
+        let mut wanted = Vec::new();
+        let first = screen.hair(&[&groom]);
+        for _ in 0..3 {
+            let picture = screen.hair(&[&groom]);
+            screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+            assert!(picture.bytes == first.bytes);
+            wanted.push(picture.counters.wanted);
+        }
+        let has_less = wanted[2] < wanted[0] / 2;
+        assert!(wanted[0] == first.counters.wanted && has_less == is_done, "{few_tiles} few: {wanted:?}");
     }
-    assert!(wanted[0] == first.counters.wanted && wanted[2] < wanted[0] / 2, "{wanted:?}");
 }

@@ -43,7 +43,7 @@ pub struct TilesDesc {
     /// Transmittance of a pixel below which nothing more is blended into it.
     pub closed_below: f32,
     /// Whether segments are left out that were hidden by other hair in the frame before. A tile in which they are not hidden any more
-    /// is drawn again with all of them, so that the picture is the same. None: where hair is dense.
+    /// is drawn again with all of them, so that the picture is the same. None: where hair is dense, in more than [`TilesDesc::few_tiles`].
     pub skips_hidden: Option<bool>,
     /// Places in a pixel where light passes hair for itself, one of [`TilesDesc::PLACES`]. With one, what a strand covers of a pixel
     /// hides that share of all that is behind it. With four, strands that run behind each other are seen beside each other.
@@ -208,10 +208,12 @@ impl Tiles {
             return;
         }
         let density = f64::from(counters.wanted) / f64::from(counters.pixels_with_hair.max(1));
-        if !self.is_dense && density > DENSE {
+        // To look for what is hidden in few tiles takes longer than to draw it.
+        let (tiles, few) = (counters.tiles_with_hair, self.few_tiles());
+        if !self.is_dense && density > DENSE && tiles > few {
             (self.is_dense, self.usage) = (true, Usage::new());
         }
-        self.is_dense &= density > LOOSE;
+        self.is_dense &= density > LOOSE && tiles > few / 2;
     }
 
     /// Binds all references and blends all tiles that wait, in rounds.
