@@ -1,5 +1,6 @@
 //! What is measured, and the file that keeps it.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
@@ -86,6 +87,11 @@ impl Row {
         self.psnr_db.map_or(0.0, |decibels| 10f64.powf(-decibels / 20.0))
     }
 
+    /// What drew it: the backend, and the name of the device without the version of its driver.
+    fn device(&self) -> (&str, &str) {
+        (&self.backend, self.adapter.split(" (").next().unwrap_or_default())
+    }
+
     /// Whether the device is a CPU that plays a GPU.
     pub(crate) fn is_software(&self) -> bool {
         ["llvmpipe", "SwiftShader", "lavapipe"].iter().any(|name| self.adapter.contains(name))
@@ -117,6 +123,12 @@ impl Run {
     pub(crate) fn with(self, newer: Self) -> Result<Self> {
         if self.setting != newer.setting {
             bail!("the rows that stay were measured at another setting: {:?}", self.setting);
+        }
+        let stay = self.rows.iter().filter(|row| newer.of_scene(&row.scene).next().is_none());
+        let [old, new]: [BTreeSet<_>; 2] =
+            [stay.map(Row::device).collect(), newer.rows.iter().map(Row::device).collect()];
+        if !old.is_empty() && old != new {
+            bail!("the rows that stay were measured by {old:?}, these by {new:?}: their times cannot be compared");
         }
         let of = |run: &Self, scene: &str| run.of_scene(scene).cloned().collect::<Vec<Row>>();
         let known = self.scenes();
@@ -212,7 +224,14 @@ pub(crate) mod tests {
         let merged = stored.clone().with(of(&[("d", 0.7), ("b", 0.5), ("b", 0.6)])).unwrap();
         assert_eq!(merged, of(&[("a", 0.1), ("a", 0.2), ("b", 0.5), ("b", 0.6), ("c", 0.4), ("d", 0.7)]));
         let small = Run { setting: Extent::Quick.setting(), ..of(&[("b", 0.5)]) };
-        assert!(stored.with(small).unwrap_err().to_string().contains("another setting"));
+        assert!(stored.clone().with(small).unwrap_err().to_string().contains("another setting"));
+        let drawn_by = |adapter: &str| {
+            let mut run = of(&[("b", 0.5)]);
+            run.rows[0].adapter = adapter.into();
+            run
+        };
+        assert!(stored.clone().with(drawn_by("a GPU (of a newer driver)")).is_ok());
+        assert!(stored.with(drawn_by("a CPU")).unwrap_err().to_string().contains("a CPU"));
     }
 
     #[test]
