@@ -17,8 +17,12 @@ import package::vector::direction_or;
 import package::rod::push_slot;
 @if(contacts)
 import package::rod_contact::contacts_of;
+@if(colliders)
+import package::rod_near::{NOTHING_KNOWN, Range, is_in, near_obstacles};
+@if(colliders)
+import package::rod_touch::edge_between;
 @if(contacts)
-import package::rod_touch::{Range, edge_between, is_in, last_touch, may_touch};
+import package::rod_touch::last_touch;
 
 /// How stiff the spring is that holds a pinned tip, over the mass that hangs on it.
 const HOLD: f32 = 1e4;
@@ -34,9 +38,9 @@ struct Begin {
     /// The frame before the first free edge.
     parent: vec4<f32>,
     /// The edges that may touch something.
-    @if(contacts) near: Range,
-    /// The most that the surface of any capsule has moved.
-    @if(contacts) surface: f32,
+    @if(colliders) near: Range,
+    /// The most that the surface of any capsule has moved past the head.
+    @if(colliders) surface: f32,
 }
 
 /// What is left of an edge: its rotation is `free + inverse * (K * rotation of its parent - transpose(mixed) * displacement of the vertex
@@ -98,7 +102,8 @@ fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, place: vec3<f
     return Inertia(sum(scaled_identity(mass * held), outer(mass * along, axis)), mass * force);
 }
 
-fn eliminate(strand: Strand, begin: Begin) {
+/// Gives whether an edge may touch a collider, where that is for `direct_near`; the sweep ends there.
+fn eliminate(strand: Strand, begin: Begin) -> bool {
     let tip = strand.edges;
     var row = row_of(strand, tip, begin.is_first_round);
     var next = row_of(strand, tip - 1u, begin.is_first_round);
@@ -119,7 +124,7 @@ fn eliminate(strand: Strand, begin: Begin) {
     var pull = last.force + hold;
     // Of the edge after the one at hand, which has half of the mass between them.
     var length_after = 0.0;
-    @if(contacts) var clear = 0.0;
+    @if(colliders) var clear = NOTHING_KNOWN;
     for (var vertex = tip; vertex > strand.held; vertex--) {
         let length = row.rest.w;
         var length_before = 0.0;
@@ -142,20 +147,28 @@ fn eliminate(strand: Strand, begin: Begin) {
         turn = sum(turn, with_transpose(cross_columns(arm, mixed + 0.5 * by_arm)));
         torque += cross(arm, force);
         mixed += by_arm;
-        @if(contacts) {
-            let edge = edge_between(strand, at, end_at, moving, end_moving);
-            if (is_in(begin.near, vertex) && may_touch(&clear, begin.surface, strand, edge, length)) {
-                let mass = 0.5 * (length + length_after);
-                let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), mass);
-                turn = sum(turn, turn_by(arm, whole(contacts.turn)));
-                torque += cross(arm, contacts.torque);
-                mixed += mixed_by(arm, whole(contacts.mixed));
-                place = sum(place, contacts.place);
-                force += contacts.force;
-                pull += contacts.pull;
+        @if(colliders) {
+            if (is_in(begin.near, vertex)) {
+                let edge = edge_between(strand, at, end_at, moving, end_moving);
+                let obstacles = near_obstacles(&clear, begin.surface, strand, edge, length);
+                @if(!contacts) {
+                    if (obstacles != 0u) { return true; }
+                }
+                @if(contacts) {
+                    if (obstacles != 0u) {
+                        let mass = 0.5 * (length + length_after);
+                        let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), obstacles, mass);
+                        turn = sum(turn, turn_by(arm, whole(contacts.turn)));
+                        torque += cross(arm, contacts.torque);
+                        mixed += mixed_by(arm, whole(contacts.mixed));
+                        place = sum(place, contacts.place);
+                        force += contacts.force;
+                        pull += contacts.pull;
+                    }
+                }
             }
-            length_after = length;
         }
+        length_after = length;
         // Tension pulls an edge straight; pressure would let it fall, and is left out.
         let correction = strand.mass_correction * length;
         let tension = length * max(dot(axis, pull), 0.0) - correction * length * length;
@@ -196,6 +209,7 @@ fn eliminate(strand: Strand, begin: Begin) {
         // Not earlier: that takes registers that there are not.
         next = row_of(strand, max(vertex, 2u) - 2u, begin.is_first_round);
     }
+    return false;
 }
 
 /// What the past says of a strain.

@@ -26,8 +26,6 @@ const ADVANCES: u32 = 12u;
 const REACHED: f32 = 0.02;
 /// Where the normal has turned by more than what this cosine says since the edge touched, it has got to the other side.
 const SAME_SIDE: f32 = 0.3;
-/// A computed distance is multiplied by this, so that rounding cannot make it too large.
-const CERTAIN: f32 = 0.999;
 /// Further than any capsule.
 const FAR: f32 = 1e30;
 
@@ -83,11 +81,12 @@ fn nothing_touched() -> Touch {
 }
 
 /// The contacts of an edge with all capsules of the section. `last` is what it touched before, `root` where the root is, relative
-/// to the centre of the groom, and `mass` that of the vertex after the edge.
-fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, mass: f32) -> Contacts {
+/// to the centre of the groom, and `mass` that of the vertex after the edge. Only `obstacles` are looked at; see `bit_of`.
+fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, obstacles: u32, mass: f32) -> Contacts {
     let none = scaled_identity(0.0);
     var contacts = Contacts(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0), nothing_touched());
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        if ((obstacles & bit_of(i)) == 0u) { continue; }
         let u_past = edge.u_moved - surface_moved(i, edge.u_before);
         let v_past = edge.v_moved - surface_moved(i, edge.v_before);
         let longest = sqrt(max(dot(u_past, u_past), dot(v_past, v_past)));
@@ -196,25 +195,27 @@ fn capsule_at(root: vec3<f32>, index: u32) -> GpuCapsule {
     return GpuCapsule(a, capsule.radius_a, b, capsule.radius_b);
 }
 
-/// By what a point that moves with a capsule has moved in the sub-step; `before` is where it was, relative to the centre of then.
-/// Exactly 0 where nothing moves.
-fn surface_moved(index: u32, before: vec3<f32>) -> vec3<f32> {
-    let motion = colliders[index].motion;
-    let with_head = turned_by(step.head_turn, before);
-    let in_head = rotate_back(step.head_rotation, before + with_head);
-    let own = turned_by(motion.rotation, in_head) + motion.translation;
-    return step.center_displacement + with_head + rotate(step.head_rotation, own);
+/// The bit of a collider in a set of them. Those from the 32nd on share the last.
+fn bit_of(index: u32) -> u32 {
+    return 1u << min(index - step.first_capsule, 31u);
 }
 
-/// The most that the surface of any capsule has moved at a distance of up to `reach` from a place relative to the centre of then.
-fn surface_bound(place: vec3<f32>, reach: f32) -> f32 {
-    var most = 0.0;
-    for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let moved = surface_moved(i, place);
-        let turn = length(step.head_turn.xyz) + length(colliders[i].motion.rotation.xyz);
-        most = max(most, length(moved) + 2.0 * turn * reach);
-    }
-    return most;
+/// By what a point that moves with a collider has moved in the sub-step; `before` is where it was, relative to the centre of then.
+/// Exactly 0 where nothing moves.
+fn surface_moved(index: u32, before: vec3<f32>) -> vec3<f32> {
+    return moved_with_head(before) + moved_by_itself(index, before);
+}
+
+/// The same of one that moves with the head.
+fn moved_with_head(before: vec3<f32>) -> vec3<f32> {
+    return step.center_displacement + turned_by(step.head_turn, before);
+}
+
+/// What a collider that moves by itself adds to that; exactly 0 of others.
+fn moved_by_itself(index: u32, before: vec3<f32>) -> vec3<f32> {
+    let motion = colliders[index].motion;
+    let in_head = rotate_back(step.head_rotation, before + turned_by(step.head_turn, before));
+    return rotate(step.head_rotation, turned_by(motion.rotation, in_head) + motion.translation);
 }
 
 /// Where the edge first comes to the surface on its way (conservative advancement), or where it gets to.

@@ -8,8 +8,10 @@ import package::rod::{
 import package::step::step;
 import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
-@if(contacts)
-import package::rod_touch::{Found, edge_between, look_at, may_touch, nothing_near};
+@if(colliders)
+import package::rod_near::{NOTHING_KNOWN, near_obstacles, no_edge};
+@if(colliders)
+import package::rod_touch::{Found, edge_between, look_at};
 
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
@@ -25,12 +27,14 @@ struct Start {
     moving: vec3<f32>,
     place: vec3<f32>,
     parent: vec4<f32>,
-    /// The most that the surface of any capsule has moved.
-    @if(contacts) surface: f32,
+    /// The most that the surface of any capsule has moved past the head.
+    @if(colliders) surface: f32,
 }
 
 /// What a round has come to.
 struct Round {
+    /// Rounds that are done.
+    count: u32,
     /// The longest rotation of an edge, rad.
     longest: f32,
     finite: bool,
@@ -39,7 +43,7 @@ struct Round {
     place: vec3<f32>,
     /// By what the tip is moved where the edges behind the first free one take their guesses.
     aimed: vec3<f32>,
-    @if(contacts) found: Found,
+    @if(colliders) found: Found,
 }
 
 /// A round at its beginning.
@@ -48,8 +52,8 @@ fn nothing_done(start: Start) -> Round {
     round.finite = true;
     round.moving = start.moving;
     round.place = start.place;
-    @if(contacts) {
-        round.found = Found(nothing_near(), false, false);
+    @if(colliders) {
+        round.found = Found(no_edge(), false, false);
     }
     return round;
 }
@@ -99,8 +103,8 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     var parent_turn = vec3(0.0);
     var parent = start.parent;
     var speed_before = vec3(0.0);
-    @if(contacts) var found = round.found;
-    @if(contacts) var clear = 0.0;
+    @if(colliders) var found = round.found;
+    @if(colliders) var clear = NOTHING_KNOWN;
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
         let length = here.rest.w;
@@ -123,9 +127,10 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         round.finite = round.finite && is_finite(round.place) && is_finite(round.moving);
         rods[slot(strand, vertex, FRAME)] = now;
         rods[slot(strand, vertex, TURNED)] = vec4(by, 0.0);
-        @if(contacts) {
+        @if(colliders) {
             let edge = edge_between(strand, place_before, round.place, moving_before, round.moving);
-            if (may_touch(&clear, start.surface, strand, edge, length)) { look_at(&found, strand, edge, vertex); }
+            let obstacles = near_obstacles(&clear, start.surface, strand, edge, length);
+            if (obstacles != 0u) { look_at(&found, strand, edge, vertex, obstacles); }
         }
         if (round.longest <= limit) {
             rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, here.moved.w);
@@ -140,7 +145,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         parent = here.now;
         parent_turn = turn;
     }
-    @if(contacts) {
+    @if(colliders) {
         round.found = found;
     }
     return round;

@@ -10,6 +10,7 @@ import package::constants::{CHUNK, LENGTHS, LOCAL};
 import package::contact::{clear_distance, pushed_out};
 @if(fields)
 import package::contact::longest_way;
+import package::counts::Counts;
 import package::grid::{GROUP, thread_index};
 import package::integrate::{Free, integrated};
 import package::lengths::{Stretching, stretched};
@@ -22,8 +23,7 @@ import package::wind::{across_edge, wind_of};
 @group(0) @binding(1) var<storage, read> rest: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read_write> previous: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> positions: array<vec4<f32>>;
-/// Strands that went back to their rest pose because they had become non-finite.
-@group(0) @binding(4) var<storage, read_write> non_finite: atomic<u32>;
+@group(0) @binding(4) var<storage, read_write> counts: Counts;
 
 /// How far the last stage is behind the first one, vertices.
 const LAG: u32 = LOCAL + 1u + 2u * LENGTHS;
@@ -90,7 +90,7 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     }
     if (!walk.finite) {
         rest_pose(strand, root);
-        atomicAdd(&non_finite, 1u);
+        atomicAdd(&counts.non_finite, 1u);
     }
 }
 

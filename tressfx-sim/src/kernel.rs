@@ -4,6 +4,7 @@
 
 pub(crate) mod bone_roots;
 pub(crate) mod direct;
+pub(crate) mod direct_near;
 pub(crate) mod field_bounds;
 pub(crate) mod field_crossings;
 pub(crate) mod field_flood;
@@ -43,11 +44,13 @@ pub(crate) const GROUP: u32 = 64;
 pub(crate) const LIBRARY: &[Module] = &[
     ("capsule", include_str!("../shaders/capsule.wgsl")),
     ("contact", include_str!("../shaders/contact.wgsl")),
+    ("counts", include_str!("../shaders/counts.wgsl")),
     ("eliminate", include_str!("../shaders/eliminate.wgsl")),
     ("field", include_str!("../shaders/field.wgsl")),
     ("field_contact", include_str!("../shaders/field_contact.wgsl")),
     ("field_mesh", include_str!("../shaders/field_mesh.wgsl")),
     ("field_side", include_str!("../shaders/field_side.wgsl")),
+    ("hand_over", include_str!("../shaders/hand_over.wgsl")),
     ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
     ("joint_matrix", include_str!("../shaders/joint_matrix.wgsl")),
@@ -56,10 +59,12 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("nodes", include_str!("../shaders/nodes.wgsl")),
     ("rod", include_str!("../shaders/rod.wgsl")),
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
+    ("rod_near", include_str!("../shaders/rod_near.wgsl")),
     ("rod_touch", include_str!("../shaders/rod_touch.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("root_frame", include_str!("../shaders/root_frame.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
+    ("sub_step", include_str!("../shaders/sub_step.wgsl")),
     ("substitute", include_str!("../shaders/substitute.wgsl")),
     ("surface", include_str!("../shaders/surface.wgsl")),
     ("symmetric", include_str!("../shaders/symmetric.wgsl")),

@@ -5,6 +5,7 @@
 
 mod bone_roots;
 pub mod direct;
+mod direct_near;
 pub mod field;
 mod field_bounds;
 mod field_crossings;
@@ -37,6 +38,7 @@ use crate::step::Step;
 use roots::RootMotion;
 
 pub use bone_roots::bone_roots;
+pub use direct_near::direct_near;
 pub use field_bounds::field_bounds;
 pub use field_crossings::field_crossings;
 pub use field_flood::field_flood;

@@ -8,6 +8,7 @@ use tressfx_core::pass::PassList;
 
 use crate::buffers::{ColliderBuffer, SectionBuffers, storage};
 use crate::kernel::direct::direct;
+use crate::kernel::direct_near::direct_near;
 use crate::kernel::moved::moved;
 use crate::kernel::roots::roots;
 use crate::kernel::tangents::tangents;
@@ -27,13 +28,16 @@ use crate::volume::Volume;
 pub(crate) struct Shared {
     /// Room for colliders, if there may be any.
     pub(crate) colliders: Option<ColliderBuffer>,
-    /// Strands that were reset because they had become non-finite.
-    pub(crate) non_finite: BufferId,
+    /// Two `u32`: strands that were reset because they had become non-finite; and those of the section at hand that `direct` has left to `direct_near`.
+    pub(crate) counts: BufferId,
     /// All signed distance fields, if there may be any among the colliders.
     pub(crate) fields: Option<BufferId>,
     /// Where hair meets hair.
     pub(crate) volume: Option<Volume>,
 }
+
+/// Where the second of [`Shared::counts`] is, bytes.
+pub(crate) const NEAR_COUNT: u64 = 4;
 
 #[derive(Debug)]
 pub(crate) struct SimSection {
@@ -50,9 +54,12 @@ struct Passes {
     roots: Option<Pass>,
     tressfx: Option<Pass>,
     direct: Option<Pass>,
+    direct_near: Option<Pass>,
     volume_splat: Option<Pass>,
     volume_push: Option<Pass>,
     tangents: Pass,
+    /// [`Shared::counts`].
+    counts: BufferId,
 }
 
 impl SimSection {
@@ -109,6 +116,10 @@ impl SimSection {
     /// Records a stage with one of [`SectionBuffers::steps`]; nothing where the section has no such pass.
     pub(crate) fn record(&self, list: &mut PassList, stage: Stage, step: usize) {
         let passes = &self.passes;
+        if let (Stage::Direct, Some(_)) = (stage, &passes.direct_near) {
+            // The list is of one section and one sub-step.
+            list.clear(passes.counts, NEAR_COUNT, 4);
+        }
         let pass = match stage {
             Stage::Roots => passes.roots.as_ref(),
             Stage::TressFx => passes.tressfx.as_ref(),
@@ -119,7 +130,8 @@ impl SimSection {
             Stage::VolumeNodes => None,
             Stage::Tangents => Some(&passes.tangents),
         };
-        pass.iter().for_each(|pass| pass.record(list, step));
+        let after = passes.direct_near.as_ref().filter(|_| stage == Stage::Direct);
+        pass.into_iter().chain(after).for_each(|pass| pass.record(list, step));
     }
 }
 
@@ -135,6 +147,8 @@ impl Passes {
             roots: roots(maker)?,
             tressfx: tressfx(maker, params)?,
             direct: direct(maker, params)?,
+            direct_near: direct_near(maker, params)?,
+            counts: maker.shared.counts,
             volume_splat: volume_splat(maker)?,
             volume_push: volume_push(maker)?,
             tangents: tangents(maker)?,

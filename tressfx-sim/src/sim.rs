@@ -19,7 +19,7 @@ use crate::input::{StepInput, check_pose};
 use crate::kernel::Kernels;
 use crate::params::SimParams;
 use crate::rods::{GpuRods, Standing};
-use crate::section::{Shared, SimSection};
+use crate::section::{NEAR_COUNT, Shared, SimSection};
 use crate::section_desc::SectionDesc;
 use crate::sleep::Sleep;
 use crate::solver::Solver;
@@ -119,7 +119,7 @@ impl HairSim {
                     0 => None,
                     most => Some(ColliderBuffer::new(backend, most, sections.len())?),
                 },
-                non_finite: storage(backend, "hair.non_finite", 4, 1)?,
+                counts: storage(backend, "hair.counts", 4, 2)?,
                 fields: fields.filter(|fields| max_colliders > 0 && !fields.is_empty()).map(Fields::buffer),
                 volume: match volume {
                     None => None,
@@ -352,7 +352,13 @@ impl HairSim {
 
     /// Brings back how many strands were reset so far because they had become non-finite: one `u32`.
     pub fn read_non_finite(&self, list: &mut PassList) -> Ticket {
-        list.read_buffer(self.shared.non_finite, 0, 4)
+        list.read_buffer(self.shared.counts, 0, 4)
+    }
+
+    /// Brings back how many strands of the last section with [`Solver::Direct`] came near a collider in the last sub-step, so that their contacts were asked for: one
+    /// `u32`, and 0 where there is no room for colliders. It says what colliders cost: such a strand takes many times as long as others.
+    pub fn read_near(&self, list: &mut PassList) -> Ticket {
+        list.read_buffer(self.shared.counts, NEAR_COUNT, 4)
     }
 
     /// Records what a section is told about a sub-step. [`HairSim::step`] does this; tests and measurements of single

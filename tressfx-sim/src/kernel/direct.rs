@@ -1,9 +1,10 @@
-//! `hair.sim.direct`: an implicit sub-step of rods; also the reset to the rest pose.
+//! `hair.sim.direct`: an implicit sub-step of rods; also the reset to the rest pose. Strands that may touch a collider are left to `hair.sim.direct_near`.
 
 use tressfx_core::Result;
-use tressfx_core::shader::{ShaderSource, Specialization};
+use tressfx_core::shader::{Binding, ShaderSource, Specialization};
 
 use super::{LIBRARY, Pass, PassMaker};
+use crate::buffers::RodBuffers;
 use crate::params::SimParams;
 
 pub(crate) const SOURCE: ShaderSource = ShaderSource {
@@ -14,25 +15,35 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 
 /// `None` for a section with another solver.
 pub(crate) fn direct(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
-    let buffers = maker.buffers;
-    let Some(rods) = buffers.rods else { return Ok(None) };
-    // A strand that nothing can touch asks for no colliders.
+    let Some(rods) = maker.buffers.rods else { return Ok(None) };
+    let (specialization, resources) = (features(maker, params, false), resources(maker, &rods));
+    maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
+}
+
+/// What the kernels of rods are specialised on; `contacts` of the one that asks for them. A strand that nothing can touch asks for no colliders.
+pub(super) fn features(maker: &PassMaker, params: &SimParams, contacts: bool) -> Specialization {
     let (colliders, fields) = (maker.shared.colliders, maker.shared.fields);
-    let specialization = Specialization::new()
-        .feature("contacts", colliders.is_some())
+    Specialization::new()
+        .feature("colliders", colliders.is_some())
+        .feature("contacts", contacts)
         .feature("fields", fields.is_some())
         .feature("internal_damping", params.internal_damping > 0.0)
         .feature("pull", params.pull_frequency > 0.0)
-        .feature("pinned_tips", buffers.pinned_tips)
-        .feature("volume", maker.shared.volume.is_some());
+        .feature("pinned_tips", maker.buffers.pinned_tips)
+        .feature("volume", maker.shared.volume.is_some())
+}
+
+/// What they are bound to.
+pub(super) fn resources(maker: &PassMaker, rods: &RodBuffers) -> Vec<(&'static str, Binding)> {
+    let (buffers, shared) = (maker.buffers, maker.shared);
     let mut resources = vec![
         ("rest", buffers.rest.into()),
         ("rod_rest", rods.rest.into()),
         ("rods", rods.state.into()),
         ("positions", buffers.strands.positions.into()),
-        ("non_finite", maker.shared.non_finite.into()),
+        ("counts", shared.counts.into()),
     ];
-    resources.extend(colliders.map(|buffer| ("colliders", buffer.colliders.into())));
-    resources.extend(fields.map(|fields| ("fields", fields.into())));
-    maker.pass_with_roots(&SOURCE, specialization, &resources, maker.guides()).map(Some)
+    resources.extend(shared.colliders.map(|buffer| ("colliders", buffer.colliders.into())));
+    resources.extend(shared.fields.map(|fields| ("fields", fields.into())));
+    resources
 }

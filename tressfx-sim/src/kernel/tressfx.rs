@@ -33,7 +33,7 @@ pub(crate) fn tressfx(maker: &mut PassMaker, params: &SimParams) -> Result<Optio
         ("rest", buffers.rest.into()),
         ("previous", buffers.previous.into()),
         ("positions", buffers.strands.positions.into()),
-        ("non_finite", maker.shared.non_finite.into()),
+        ("counts", maker.shared.counts.into()),
     ];
     resources.extend(colliders.map(|buffer| ("colliders", buffer.colliders.into())));
     resources.extend(fields.map(|fields| ("fields", fields.into())));

@@ -1,0 +1,103 @@
+// Which colliders an edge of a strand may touch in a sub-step: those that are no further from it than its ends have moved past their surface. What rides on the head with
+// the roots moves with them, so motion is measured past the head.
+
+import package::capsule::GpuCapsule;
+@if(fields)
+import package::field_contact::{SLOPE, is_field, sample_of};
+import package::rod::{Strand, reach_of};
+import package::rod_contact::{Edge, FAR, bit_of, capsule_at, colliders, moved_by_itself, moved_with_head, nearest_points};
+import package::step::step;
+@if(fields)
+import package::vector::rotate_back;
+
+/// A computed distance is multiplied by this, and a motion divided, so that rounding cannot make one too large or the other too small.
+const SURE: f32 = 0.999;
+
+/// The vertices behind edges that may touch something, from the first to the last; none where the last is before the first.
+struct Range { first: u32, last: u32 }
+
+fn no_edge() -> Range {
+    return Range(step.vertices, 0u);
+}
+
+fn all_edges(strand: Strand) -> Range {
+    return Range(strand.held + 1u, strand.edges);
+}
+
+fn is_any(range: Range) -> bool {
+    return range.first <= range.last;
+}
+
+fn is_in(range: Range, vertex: u32) -> bool {
+    return vertex >= range.first && vertex <= range.last;
+}
+
+/// How far a sweep along a strand can go on, at least, until it gets to the nearest collider, and to any other.
+struct Clear { nearest: u32, distance: f32, others: f32 }
+
+const NOTHING_KNOWN: Clear = Clear(0u, 0.0, 0.0);
+
+/// The most that the surface of any collider has moved by itself where the strand can be.
+fn surface_way(strand: Strand) -> f32 {
+    let then = strand.root_now - strand.root_moved + step.center_displacement;
+    let reach = reach_of(strand);
+    var most = 0.0;
+    for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        let turn = length(colliders[i].motion.rotation.xyz);
+        most = max(most, length(moved_by_itself(i, then)) + 2.0 * turn * reach);
+    }
+    return most;
+}
+
+/// The set of colliders that an edge of a sweep may touch; see `bit_of`. `surface` is how far they have moved by themselves at most.
+fn near_obstacles(clear: ptr<function, Clear>, surface: f32, strand: Strand, edge: Edge, length: f32) -> u32 {
+    (*clear).distance -= length;
+    (*clear).others -= length;
+    let longest = (past_head(edge) + surface) / SURE;
+    if (min((*clear).distance, (*clear).others) > longest) { return 0u; }
+    if ((*clear).others > longest) {
+        // Only the nearest is within reach.
+        let distance = distance_from((*clear).nearest, strand.root_now, edge, length);
+        (*clear).distance = distance - length;
+        return select(0u, bit_of((*clear).nearest), distance <= longest);
+    }
+    var found = 0u;
+    var nearest = Clear(step.first_capsule, FAR, FAR);
+    for (var i = step.first_capsule; i < step.end_capsule; i++) {
+        let distance = distance_from(i, strand.root_now, edge, length);
+        if (distance <= longest) { found |= bit_of(i); }
+        nearest.others = min(nearest.others, max(nearest.distance, distance));
+        if (distance < nearest.distance) {
+            nearest.distance = distance;
+            nearest.nearest = i;
+        }
+    }
+    *clear = Clear(nearest.nearest, nearest.distance - length, nearest.others - length);
+    return found;
+}
+
+/// The most that an end of an edge has moved past the head.
+fn past_head(edge: Edge) -> f32 {
+    let u_past = edge.u_moved - moved_with_head(edge.u_before);
+    let v_past = edge.v_moved - moved_with_head(edge.v_before);
+    return sqrt(max(dot(u_past, u_past), dot(v_past, v_past)));
+}
+
+/// How far an edge is from a collider, or less: by so much a point of it can move in any direction and not touch it.
+fn distance_from(index: u32, root: vec3<f32>, edge: Edge, length: f32) -> f32 {
+    @if(fields) {
+        if (is_field(colliders[index].capsule)) {
+            let middle = rotate_back(step.head_rotation, root + 0.5 * (edge.u + edge.v));
+            return SLOPE * sample_of(colliders[index].capsule, middle).distance - 0.5 * length;
+        }
+    }
+    let capsule = capsule_at(root, index);
+    let gap = nearest_points(capsule, edge.u, edge.v).gap;
+    return min(gap, SURE * gap / (1.0 + taper_of(capsule)));
+}
+
+/// By how much the radius of a capsule changes along its axis.
+fn taper_of(capsule: GpuCapsule) -> f32 {
+    let axis = distance(capsule.a, capsule.b);
+    return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
+}

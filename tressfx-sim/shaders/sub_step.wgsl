@@ -1,0 +1,208 @@
+// A sub-step of a strand of rods: what its rounds begin with, how many there are, and what the next sub-step begins with. Of `direct` and of `direct_near`.
+
+import package::counts::Counts;
+import package::eliminate::{Begin, eliminate, hold_place, hold_stiffness};
+import package::joint::joint_between;
+import package::rod::{
+    BEGIN, FRAME, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, half_turn,
+    moved_slot, packed_marks, positions, rest, rest_before, rods, slot,
+};
+@if(colliders)
+import package::rod_near::{all_edges, is_any, surface_way};
+@if(contacts)
+import package::rod_touch::note_touches;
+import package::root::shape_of;
+import package::step::step;
+import package::substitute::{Aimed, NO_AIM_AT_ROOT, Round, Start, aim, aim_again, keep_aim, substitute};
+
+@group(0) @binding(5) var<storage, read_write> counts: Counts;
+
+/// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
+const TOO_FAST: f32 = 0.5;
+/// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
+const ANOTHER_ROUND: f32 = 2.0;
+/// and in sub-steps shorter than this, s, by less, as their square.
+const SHORT: f32 = 1.0 / 120.0;
+
+/// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
+const TOUCHING_ROUNDS: u32 = 4u;
+/// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
+const MOST_ROUNDS: u32 = 8u;
+const SETTLED: f32 = 1e-5;
+
+/// The share of what the spring of a pinned tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
+/// that is pulled taut swings to and fro without end.
+const TAKEN_UP: f32 = 0.125;
+
+/// The strand goes to its rest pose, at rest.
+fn rest_again(strand: Strand) {
+    for (var i = 0u; i < step.vertices; i++) {
+        let vertex = rest[i * step.guides + strand.guide];
+        positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
+        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0, 0.0, 0.0, vertex.w); }
+        if (i > 0u) {
+            let frame = frame_at_rest(strand, i);
+            rods[slot(strand, i, FRAME)] = frame;
+            keep_aim(strand, i, 0.0, Aimed(frame, vec3(0.0)));
+        }
+    }
+    rods[slot(strand, 0u, BEGIN)] = vec4(0.0, 0.0, 0.0, packed_marks(Marks(strand.turn, false, false, false)));
+    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, step.length, f32(step.vertices), 0.0);
+    rods[slot(strand, 0u, HOLDING)] = vec4(0.0);
+    store_strains(strand, false);
+}
+
+/// Moves what the root holds: itself and the vertices after it that are pinned as well.
+fn carry_held(strand: Strand) -> Start {
+    var start: Start;
+    start.moving = strand.root_moved;
+    start.parent = strand.root.rotation;
+    @if(colliders) {
+        start.surface = surface_way(strand);
+    }
+    let mass = rods[moved_slot(strand, 0u, 1u)].w;
+    rods[moved_slot(strand, 0u, 0u)] = vec4(start.moving, mass);
+    positions[strand.guide] = vec4(strand.root_now, mass);
+    for (var vertex = 1u; vertex <= strand.held; vertex++) {
+        let length = rest_before(strand, vertex).w;
+        start.parent = frame_at_rest(strand, vertex);
+        let axis = along(start.parent);
+        start.moving += length * (axis - along(rods[slot(strand, vertex, FRAME)]));
+        start.place += length * axis;
+        let mass = rods[moved_slot(strand, vertex, 1u)].w;
+        rods[moved_slot(strand, vertex, 0u)] = vec4(start.moving, mass);
+        rods[slot(strand, vertex, FRAME)] = start.parent;
+        positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + start.place, mass);
+    }
+    return start;
+}
+
+/// What the first round begins with. Of the guess only the first free edge asks where the root is.
+fn first_begin(strand: Strand, start: Start) -> Begin {
+    let vertex = strand.held + 1u;
+    let frame = rods[slot(strand, vertex, FRAME)];
+    let moved = rods[moved_slot(strand, vertex, 1u)].xyz;
+    let before = rods[moved_slot(strand, vertex, 2u)].xyz;
+    let length = rest_before(strand, vertex).w;
+    let apart = strand.speed.x * moved + strand.speed.y * before - start.moving;
+    let aimed = aim(frame, length, apart, NO_AIM_AT_ROOT);
+    var begin: Begin;
+    begin.is_first_round = true;
+    begin.parent = start.parent;
+    begin.moving = start.moving + keep_aim(strand, vertex, length, aimed) + rods[slot(strand, 0u, BEGIN)].xyz;
+    let tip = positions[strand.edges * step.strands + strand.guide].xyz;
+    begin.place = tip - step.center_displacement + begin.moving - strand.root_now;
+    @if(colliders) {
+        begin.near = all_edges(strand);
+        begin.surface = start.surface;
+    }
+    return begin;
+}
+
+/// What the next round begins with.
+fn next_begin(strand: Strand, start: Start, round: Round) -> Begin {
+    if (round.count == 0u) { return first_begin(strand, start); }
+    var begin: Begin;
+    begin.parent = start.parent;
+    begin.moving = round.moving;
+    begin.place = round.place;
+    @if(colliders) {
+        begin.near = round.found.near;
+        begin.surface = start.surface;
+    }
+    return begin;
+}
+
+/// Where an edge turns by more than this in a round, rad, there is another one.
+fn limit_of(round: u32) -> f32 {
+    return select(1e9, ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), round < step.rounds);
+}
+
+/// Whether the last round is not the end.
+fn goes_on(strand: Strand, round: Round) -> bool {
+    // A strand that the root holds as a whole, such as one of no length, makes none.
+    if (round.count == 0u) { return strand.held < strand.edges; }
+    if (round.count == MOST_ROUNDS) { return false; }
+    var more = round.longest > limit_of(round.count);
+    @if(contacts) {
+        let touching = round.found.touching && round.longest >= SETTLED;
+        more = more || (touching && (round.count < TOUCHING_ROUNDS || round.found.deep));
+    }
+    return more;
+}
+
+/// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no more than to where an edge
+/// may touch something.
+fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
+    var round = so_far;
+    while (goes_on(strand, round)) {
+        let begin = next_begin(strand, start, round);
+        let is_near = eliminate(strand, begin);
+        @if(colliders && !contacts) {
+            if (is_near) {
+                round.found.near = all_edges(strand);
+                break;
+            }
+        }
+        let count = round.count + 1u;
+        round = substitute(strand, start, begin.is_first_round, limit_of(count));
+        round.count = count;
+        @if(colliders && !contacts) {
+            if (is_any(round.found.near)) { break; }
+        }
+    }
+    return round;
+}
+
+/// Ends a sub-step. A strand that has become non-finite goes back to its rest pose, and is counted.
+fn end(strand: Strand, start: Start, round: Round) {
+    if (round.finite) {
+        finish(strand, start, round);
+    } else {
+        rest_again(strand);
+        atomicAdd(&counts.non_finite, 1u);
+    }
+}
+
+/// Stores the state of the strand that the next sub-step begins with.
+fn finish(strand: Strand, start: Start, round: Round) {
+    var calm = round.longest < TOO_FAST;
+    var near = vec2(f32(step.vertices), 0.0);
+    @if(contacts) {
+        let is_new = note_touches(strand, round.found.near, start.surface);
+        calm = calm && !is_new;
+        near = vec2(f32(round.found.near.first), f32(round.found.near.last));
+    }
+    var aimed = round.aimed;
+    if (!calm && strand.has_past) { aimed = aim_again(strand); }
+    keep_hold(strand, round.place, calm);
+    store_strains(strand, true);
+    let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);
+    let last_length = rods[slot(strand, 0u, LENGTHS)].x;
+    rods[slot(strand, 0u, BEGIN)] = vec4(aimed, packed_marks(marks));
+    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, last_length, near);
+}
+
+/// Stores the strains of all joints; the ones before them are kept, or are the same.
+fn store_strains(strand: Strand, keep: bool) {
+    @if(internal_damping) {
+        var parent = strand.root.rotation;
+        for (var vertex = 1u; vertex < step.vertices; vertex++) {
+            let frame = rods[slot(strand, vertex, FRAME)];
+            let last = rods[slot(strand, vertex, STRAIN)];
+            let strain = joint_between(parent, half_turn(rest_before(strand, vertex)), frame).strain;
+            rods[slot(strand, vertex, LAST_STRAIN)] = vec4(select(strain, last.xyz, keep), 0.0);
+            rods[slot(strand, vertex, STRAIN)] = vec4(strain, last.w);
+            parent = frame;
+        }
+    }
+}
+
+/// The force that a pinned tip has come to takes up some of what the spring leaves; `place` is from the root. Where the rounds have not come to
+/// their end, what is left says nothing of the force.
+fn keep_hold(strand: Strand, place: vec3<f32>, calm: bool) {
+    @if(pinned_tips) {
+        let more = hold_stiffness(strand) * (hold_place(strand) - strand.root_now - place);
+        if (calm) { rods[slot(strand, 0u, HOLDING)] += vec4(TAKEN_UP * more, 0.0); }
+    }
+}
