@@ -27,9 +27,13 @@ fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
 /// A distance that `point` can move in any direction and not come inside. For a tapered capsule it is less than the distance
 /// from `sphere`, since the radius changes along the axis.
 fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
+    return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper_of(capsule));
+}
+
+/// By how much the radius of a capsule changes along its axis.
+fn taper_of(capsule: GpuCapsule) -> f32 {
     let axis = distance(capsule.a, capsule.b);
-    let taper = select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
-    return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper);
+    return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin

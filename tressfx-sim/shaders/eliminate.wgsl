@@ -18,7 +18,7 @@ import package::rod::push_slot;
 @if(contacts)
 import package::rod_contact::contacts_of;
 @if(colliders)
-import package::rod_near::{NOTHING_KNOWN, Range, is_in, near_obstacles};
+import package::rod_near::{Range, is_in, near_obstacles, nothing_known};
 @if(colliders)
 import package::rod_touch::edge_between;
 @if(contacts)
@@ -124,7 +124,7 @@ fn eliminate(strand: Strand, begin: Begin) -> bool {
     var pull = last.force + hold;
     // Of the edge after the one at hand, which has half of the mass between them.
     var length_after = 0.0;
-    @if(colliders) var clear = NOTHING_KNOWN;
+    @if(colliders) var clear = nothing_known();
     for (var vertex = tip; vertex > strand.held; vertex--) {
         let length = row.rest.w;
         var length_before = 0.0;

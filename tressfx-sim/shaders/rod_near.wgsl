@@ -1,7 +1,7 @@
 // Which colliders an edge of a strand may touch in a sub-step: those that are no further from it than its ends have moved past their surface. What rides on the head with
 // the roots moves with them, so motion is measured past the head.
 
-import package::capsule::GpuCapsule;
+import package::capsule::taper_of;
 @if(fields)
 import package::field_contact::{SLOPE, is_field, sample_of};
 import package::rod::{Strand, reach_of};
@@ -35,7 +35,9 @@ fn is_in(range: Range, vertex: u32) -> bool {
 /// How far a sweep along a strand can go on, at least, until it gets to the nearest collider, and to any other.
 struct Clear { nearest: u32, distance: f32, others: f32 }
 
-const NOTHING_KNOWN: Clear = Clear(0u, 0.0, 0.0);
+fn nothing_known() -> Clear {
+    return Clear(0u, 0.0, 0.0);
+}
 
 /// The most that the surface of any collider has moved by itself where the strand can be.
 fn surface_way(strand: Strand) -> f32 {
@@ -94,10 +96,4 @@ fn distance_from(index: u32, root: vec3<f32>, edge: Edge, length: f32) -> f32 {
     let capsule = capsule_at(root, index);
     let gap = nearest_points(capsule, edge.u, edge.v).gap;
     return min(gap, SURE * gap / (1.0 + taper_of(capsule)));
-}
-
-/// By how much the radius of a capsule changes along its axis.
-fn taper_of(capsule: GpuCapsule) -> f32 {
-    let axis = distance(capsule.a, capsule.b);
-    return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
 }

@@ -8,7 +8,7 @@ import package::rod_contact::Edge;
 import package::rod_contact::{Touch, contacts_of, nothing_touched, packed_direction, unpacked_direction};
 import package::rod_near::Range;
 @if(contacts)
-import package::rod_near::{NOTHING_KNOWN, is_in, near_obstacles};
+import package::rod_near::{is_in, near_obstacles, nothing_known};
 import package::step::step;
 
 /// The edges that were near a collider at the end of the last sub-step.
@@ -56,7 +56,7 @@ fn look_at(found: ptr<function, Found>, strand: Strand, edge: Edge, vertex: u32,
 @if(contacts)
 fn note_touches(strand: Strand, range: Range, surface: f32) -> bool {
     var is_new = false;
-    var clear = NOTHING_KNOWN;
+    var clear = nothing_known();
     for (var vertex = range.first; vertex <= range.last; vertex++) {
         let u = positions[(vertex - 1u) * step.strands + strand.guide].xyz - strand.root_now;
         let v = positions[vertex * step.strands + strand.guide].xyz - strand.root_now;

@@ -9,7 +9,7 @@ import package::step::step;
 import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
-import package::rod_near::{NOTHING_KNOWN, near_obstacles, no_edge};
+import package::rod_near::{near_obstacles, no_edge, nothing_known};
 @if(colliders)
 import package::rod_touch::{Found, edge_between, look_at};
 
@@ -104,7 +104,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     var parent = start.parent;
     var speed_before = vec3(0.0);
     @if(colliders) var found = round.found;
-    @if(colliders) var clear = NOTHING_KNOWN;
+    @if(colliders) var clear = nothing_known();
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
         let length = here.rest.w;

@@ -102,6 +102,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
     let names = [
         "bounded",
         "clump",
+        "contacts",
         "copies",
         "fibre",
         "fields",
@@ -128,7 +129,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "volume",
     ];
     // It is always written for capsules.
-    let all = names.into_iter().flat_map(both).chain(["capsules true", "contacts true"].map(String::from));
+    let all = names.into_iter().flat_map(both).chain(["capsules true", "colliders true"].map(String::from));
     assert_eq!(features, all.collect());
 }
 
