@@ -27,7 +27,7 @@ fn direct(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     let start = carry_held(strand);
     let round = rounds(strand, start, nothing_done(start));
     @if(colliders) {
-        if (is_any(round.found.near)) {
+        if (is_any(round.near)) {
             hand_over(strand, round);
             return;
         }

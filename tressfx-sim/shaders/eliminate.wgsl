@@ -19,6 +19,7 @@ import package::rod::push_slot;
 import package::rod_contact::contacts_of;
 @if(colliders)
 import package::rod_near::{Range, is_in, near_obstacles, nothing_known};
+import package::rod_touch::Found;
 @if(colliders)
 import package::rod_touch::edge_between;
 @if(contacts)
@@ -102,8 +103,9 @@ fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, place: vec3<f
     return Inertia(sum(scaled_identity(mass * held), outer(mass * along, axis)), mass * force);
 }
 
-/// Gives whether an edge may touch a collider, where that is for `direct_near`; the sweep ends there.
-fn eliminate(strand: Strand, begin: Begin) -> bool {
+/// Gives what it has found where the round begins. Where contacts are for `direct_near`, it ends at the first edge that may touch something.
+fn eliminate(strand: Strand, begin: Begin) -> Found {
+    var found: Found;
     let tip = strand.edges;
     var row = row_of(strand, tip, begin.is_first_round);
     var next = row_of(strand, tip - 1u, begin.is_first_round);
@@ -152,7 +154,7 @@ fn eliminate(strand: Strand, begin: Begin) -> bool {
                 let edge = edge_between(strand, at, end_at, moving, end_moving);
                 let obstacles = near_obstacles(&clear, begin.surface, strand, edge, length);
                 @if(!contacts) {
-                    if (obstacles != 0u) { return true; }
+                    if (obstacles != 0u) { return Found(true, false, false); }
                 }
                 @if(contacts) {
                     if (obstacles != 0u) {
@@ -164,6 +166,9 @@ fn eliminate(strand: Strand, begin: Begin) -> bool {
                         place = sum(place, contacts.place);
                         force += contacts.force;
                         pull += contacts.pull;
+                        found.near = true;
+                        found.touching = found.touching || contacts.touch.obstacle > 0u;
+                        found.deep = found.deep || contacts.touch.is_deep;
                     }
                 }
             }
@@ -209,7 +214,7 @@ fn eliminate(strand: Strand, begin: Begin) -> bool {
         // Not earlier: that takes registers that there are not.
         next = row_of(strand, max(vertex, 2u) - 2u, begin.is_first_round);
     }
-    return false;
+    return found;
 }
 
 /// What the past says of a strain.

@@ -2,15 +2,14 @@
 
 import package::rod::{FRAME, LISTED, SO_FAR, Strand, TURNED, along, frame_at_rest, moved_slot, rest_before, rods, slot, slot_of, strand_of};
 import package::rod_near::{Range, surface_way};
-import package::rod_touch::Found;
-import package::sub_step::{SETTLED, counts};
+import package::sub_step::counts;
 import package::substitute::{Round, Start, nothing_done};
 import package::vector::is_finite;
 
 /// Puts a strand into the list.
 fn hand_over(strand: Strand, round: Round) {
     let place = atomicAdd(&counts.near, 1u);
-    rods[slot_of(place, 0u, LISTED)] = vec4(f32(strand.guide), f32(round.count), f32(round.found.near.first), f32(round.found.near.last));
+    rods[slot_of(place, 0u, LISTED)] = vec4(f32(strand.guide), f32(round.count), f32(round.near.first), f32(round.near.last));
     rods[slot_of(place, 0u, SO_FAR)] = vec4(round.aimed, round.longest);
 }
 
@@ -49,8 +48,7 @@ fn listed_round(strand: Strand, start: Start, place: u32) -> Round {
         round.place += length * along(rods[slot(strand, vertex, FRAME)]);
     }
     round.finite = is_finite(round.place) && is_finite(round.moving);
-    // Whether it touches is asked in the round that follows.
-    round.found = Found(Range(u32(listed.z), u32(listed.w)), true, false);
-    round.longest = max(so_far.w, SETTLED);
+    round.near = Range(u32(listed.z), u32(listed.w));
+    round.longest = so_far.w;
     return round;
 }

@@ -39,18 +39,8 @@ fn edge_between(strand: Strand, u: vec3<f32>, v: vec3<f32>, u_moved: vec3<f32>, 
     return Edge(u, v, u_moved, v_moved, then + u - u_moved, then + v - v_moved);
 }
 
-/// What has been found along a strand.
-struct Found { near: Range, touching: bool, deep: bool }
-
-/// Looks at an edge, the one before `vertex`, that may touch these obstacles.
-fn look_at(found: ptr<function, Found>, strand: Strand, edge: Edge, vertex: u32, obstacles: u32) {
-    (*found).near = Range(min((*found).near.first, vertex), vertex);
-    @if(contacts) {
-        let touch = contacts_of(strand.root_now, edge, last_touch(strand, vertex), obstacles, 1.0).touch;
-        (*found).touching = (*found).touching || touch.obstacle > 0u;
-        (*found).deep = (*found).deep || touch.is_deep;
-    }
-}
+/// What a sweep finds along a strand: whether an edge may touch something, touches it, and is deep inside.
+struct Found { near: bool, touching: bool, deep: bool }
 
 /// Notes what the edges that may touch anything touch, for the next sub-step, and says whether any of it is new.
 @if(contacts)

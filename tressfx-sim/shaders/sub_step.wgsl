@@ -10,7 +10,7 @@ import package::rod::{
 @if(colliders)
 import package::rod_near::{all_edges, is_any, surface_way};
 @if(contacts)
-import package::rod_touch::note_touches;
+import package::rod_touch::{Found, note_touches};
 import package::root::shape_of;
 import package::step::step;
 import package::substitute::{Aimed, NO_AIM_AT_ROOT, Round, Start, aim, aim_again, keep_aim, substitute};
@@ -107,7 +107,7 @@ fn next_begin(strand: Strand, start: Start, round: Round) -> Begin {
     begin.moving = round.moving;
     begin.place = round.place;
     @if(colliders) {
-        begin.near = round.found.near;
+        begin.near = round.near;
         begin.surface = start.surface;
     }
     return begin;
@@ -118,37 +118,46 @@ fn limit_of(round: u32) -> f32 {
     return select(1e9, ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), round < step.rounds);
 }
 
-/// Whether the last round is not the end.
-fn goes_on(strand: Strand, round: Round) -> bool {
+/// Whether the last round may not be the end. Where an edge may touch something, the next sweep says; see `is_end`.
+fn may_go_on(strand: Strand, round: Round) -> bool {
     // A strand that the root holds as a whole, such as one of no length, makes none.
     if (round.count == 0u) { return strand.held < strand.edges; }
     if (round.count == MOST_ROUNDS) { return false; }
     var more = round.longest > limit_of(round.count);
     @if(contacts) {
-        let touching = round.found.touching && round.longest >= SETTLED;
-        more = more || (touching && (round.count < TOUCHING_ROUNDS || round.found.deep));
+        more = more || (is_any(round.near) && round.longest >= SETTLED);
     }
     return more;
+}
+
+/// Whether the last round was the end where an edge may touch something, by what the sweep behind it has found.
+@if(contacts)
+fn is_end(round: Round, found: Found) -> bool {
+    let is_calm = round.count > 0u && round.longest <= limit_of(round.count);
+    return is_calm && !(found.touching && (round.count < TOUCHING_ROUNDS || found.deep));
 }
 
 /// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no more than to where an edge
 /// may touch something.
 fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
     var round = so_far;
-    while (goes_on(strand, round)) {
+    while (may_go_on(strand, round)) {
         let begin = next_begin(strand, start, round);
-        let is_near = eliminate(strand, begin);
+        let found = eliminate(strand, begin);
         @if(colliders && !contacts) {
-            if (is_near) {
-                round.found.near = all_edges(strand);
+            if (found.near) {
+                round.near = all_edges(strand);
                 break;
             }
+        }
+        @if(contacts) {
+            if (is_end(round, found)) { break; }
         }
         let count = round.count + 1u;
         round = substitute(strand, start, begin.is_first_round, limit_of(count));
         round.count = count;
         @if(colliders && !contacts) {
-            if (is_any(round.found.near)) { break; }
+            if (is_any(round.near)) { break; }
         }
     }
     return round;
@@ -169,9 +178,9 @@ fn finish(strand: Strand, start: Start, round: Round) {
     var calm = round.longest < TOO_FAST;
     var near = vec2(f32(step.vertices), 0.0);
     @if(contacts) {
-        let is_new = note_touches(strand, round.found.near, start.surface);
+        let is_new = note_touches(strand, round.near, start.surface);
         calm = calm && !is_new;
-        near = vec2(f32(round.found.near.first), f32(round.found.near.last));
+        near = vec2(f32(round.near.first), f32(round.near.last));
     }
     var aimed = round.aimed;
     if (!calm && strand.has_past) { aimed = aim_again(strand); }

@@ -9,9 +9,9 @@ import package::step::step;
 import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
-import package::rod_near::{near_obstacles, no_edge, nothing_known};
+import package::rod_near::{Range, near_obstacles, no_edge, nothing_known};
 @if(colliders)
-import package::rod_touch::{Found, edge_between, look_at};
+import package::rod_touch::edge_between;
 
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
@@ -43,7 +43,8 @@ struct Round {
     place: vec3<f32>,
     /// By what the tip is moved where the edges behind the first free one take their guesses.
     aimed: vec3<f32>,
-    @if(colliders) found: Found,
+    /// The edges that may touch something.
+    @if(colliders) near: Range,
 }
 
 /// A round at its beginning.
@@ -53,7 +54,7 @@ fn nothing_done(start: Start) -> Round {
     round.moving = start.moving;
     round.place = start.place;
     @if(colliders) {
-        round.found = Found(no_edge(), false, false);
+        round.near = no_edge();
     }
     return round;
 }
@@ -103,7 +104,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     var parent_turn = vec3(0.0);
     var parent = start.parent;
     var speed_before = vec3(0.0);
-    @if(colliders) var found = round.found;
+    @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
@@ -130,7 +131,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         @if(colliders) {
             let edge = edge_between(strand, place_before, round.place, moving_before, round.moving);
             let obstacles = near_obstacles(&clear, start.surface, strand, edge, length);
-            if (obstacles != 0u) { look_at(&found, strand, edge, vertex, obstacles); }
+            if (obstacles != 0u) { near = Range(min(near.first, vertex), vertex); }
         }
         if (round.longest <= limit) {
             rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, here.moved.w);
@@ -146,7 +147,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         parent_turn = turn;
     }
     @if(colliders) {
-        round.found = found;
+        round.near = near;
     }
     return round;
 }
