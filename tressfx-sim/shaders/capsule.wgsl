@@ -5,8 +5,9 @@ import package::vector::{direction_or, rotate_back};
 struct GpuCapsule { a: vec3<f32>, radius_a: f32, b: vec3<f32>, radius_b: f32 }
 
 /// The motion of a capsule during the sub-step, in the space of the head, relative to the centre of the groom: its points
-/// are rotated, then moved by `translation`.
-struct GpuCapsuleMotion { rotation: vec4<f32>, translation: vec3<f32>, padding: f32 }
+/// are rotated, then moved by `translation`. And of the capsule, where there is room for it: the share of the distance from its surface that
+/// a point can move in any direction and not come inside. The radius of a tapered one changes along its axis.
+struct GpuCapsuleMotion { rotation: vec4<f32>, translation: vec3<f32>, clear_share: f32 }
 
 /// Something to collide with: at the end of the sub-step, in the space of the rest pose, relative to the centre of the groom, and how it has moved.
 struct Collider { capsule: GpuCapsule, motion: GpuCapsuleMotion }
@@ -24,16 +25,10 @@ fn nearest(capsule: GpuCapsule, point: vec3<f32>) -> vec4<f32> {
     return vec4(capsule.a + t * axis, capsule.radius_a + t * (capsule.radius_b - capsule.radius_a));
 }
 
-/// A distance that `point` can move in any direction and not come inside. For a tapered capsule it is less than the distance
-/// from `sphere`, since the radius changes along the axis.
-fn clearance(capsule: GpuCapsule, point: vec3<f32>, sphere: vec4<f32>) -> f32 {
-    return (distance(point, sphere.xyz) - sphere.w) / (1.0 + taper_of(capsule));
-}
-
-/// By how much the radius of a capsule changes along its axis.
-fn taper_of(capsule: GpuCapsule) -> f32 {
-    let axis = distance(capsule.a, capsule.b);
-    return select(0.0, abs(capsule.radius_b - capsule.radius_a) / axis, axis > 0.0);
+/// A distance that a point can move in any direction and not come inside.
+fn clearance(collider: Collider, point: vec3<f32>) -> f32 {
+    let sphere = nearest(collider.capsule, point);
+    return (distance(point, sphere.xyz) - sphere.w) * collider.motion.clear_share;
 }
 
 /// What is left of a displacement along a surface after Coulomb friction against a push of `depth` along `normal` (Macklin

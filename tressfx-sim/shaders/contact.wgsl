@@ -21,14 +21,13 @@ fn clear_distance(point: vec3<f32>) -> f32 {
     let in_head = rotate_back(step.head_rotation, point);
     var clear = FAR;
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let capsule = colliders[i].capsule;
         @if(fields) {
-            if (is_field(capsule)) {
-                clear = min(clear, SLOPE * sample_of(capsule, in_head).distance);
+            if (is_field(colliders[i].capsule)) {
+                clear = min(clear, SLOPE * sample_of(colliders[i].capsule, in_head).distance);
                 continue;
             }
         }
-        clear = min(clear, clearance(capsule, in_head, nearest(capsule, in_head)));
+        clear = min(clear, clearance(colliders[i], in_head));
     }
     return CERTAIN * clear;
 }

@@ -1,5 +1,6 @@
-// The sub-step of `direct` for the strands that it has left: those that may touch a collider. They make more rounds, and ask for their contacts in each sweep. Few of
-// them are on a GPU at once for each of its processors, so groups are small, and the strands of the list go to groups in turns.
+// The sub-step of `direct` for the strands that it has left: those that may touch a collider. They make more rounds, and ask for their
+// contacts in each of them. Few of them are on a GPU at once for each of its processors, so groups are small, and the strands of the list go
+// to groups in turns.
 
 import package::hand_over::{listed_round, listed_start, listed_strand};
 import package::sub_step::{counts, end, rounds};

@@ -18,12 +18,10 @@ import package::rod::push_slot;
 @if(contacts)
 import package::rod_contact::contacts_of;
 @if(colliders)
-import package::rod_near::{Range, is_in, near_obstacles, nothing_known};
+import package::rod_near::{Range, is_in, near_obstacles, nothing_known, past_head};
 import package::rod_touch::Found;
-@if(colliders)
-import package::rod_touch::edge_between;
 @if(contacts)
-import package::rod_touch::last_touch;
+import package::rod_touch::{edge_between, last_touch};
 
 /// How stiff the spring is that holds a pinned tip, over the mass that hangs on it.
 const HOLD: f32 = 1e4;
@@ -127,6 +125,7 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
     // Of the edge after the one at hand, which has half of the mass between them.
     var length_after = 0.0;
     @if(colliders) var clear = nothing_known();
+    @if(colliders) var past_after = 0.0;
     for (var vertex = tip; vertex > strand.held; vertex--) {
         let length = row.rest.w;
         var length_before = 0.0;
@@ -151,14 +150,17 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         mixed += by_arm;
         @if(colliders) {
             if (is_in(begin.near, vertex)) {
-                let edge = edge_between(strand, at, end_at, moving, end_moving);
-                let obstacles = near_obstacles(&clear, begin.surface, strand, edge, length);
+                if (vertex == min(begin.near.last, tip)) { past_after = past_head(strand, end_at, end_moving); }
+                let past = past_head(strand, at, moving);
+                let obstacles = near_obstacles(&clear, begin.surface, max(past, past_after), strand, at, end_at, length);
+                past_after = past;
                 @if(!contacts) {
                     if (obstacles != 0u) { return Found(true, false, false); }
                 }
                 @if(contacts) {
                     if (obstacles != 0u) {
                         let mass = 0.5 * (length + length_after);
+                        let edge = edge_between(strand, at, end_at, moving, end_moving);
                         let contacts = contacts_of(strand.root_now, edge, last_touch(strand, vertex), obstacles, mass);
                         turn = sum(turn, turn_by(arm, whole(contacts.turn)));
                         torque += cross(arm, contacts.torque);

@@ -1,13 +1,12 @@
-// Which colliders an edge of a strand may touch in a sub-step: those that are no further from it than its ends have moved past their surface. What rides on the head with
-// the roots moves with them, so motion is measured past the head.
+// Which colliders an edge of a strand may touch in a sub-step: those that are no further from it than its ends have moved past their
+// surface. What rides on the head with the roots moves with them, so motion is measured past the head.
 
-import package::capsule::taper_of;
+import package::capsule::clearance;
 @if(fields)
 import package::field_contact::{SLOPE, is_field, sample_of};
 import package::rod::{Strand, reach_of};
-import package::rod_contact::{Edge, FAR, bit_of, capsule_at, colliders, moved_by_itself, moved_with_head, nearest_points};
+import package::rod_contact::{FAR, bit_of, capsule_at, colliders, moved_by_itself, moved_with_head, nearest_points};
 import package::step::step;
-@if(fields)
 import package::vector::rotate_back;
 
 /// A computed distance is multiplied by this, and a motion divided, so that rounding cannot make one too large or the other too small.
@@ -51,22 +50,33 @@ fn surface_way(strand: Strand) -> f32 {
     return most;
 }
 
-/// The set of colliders that an edge of a sweep may touch; see `bit_of`. `surface` is how far they have moved by themselves at most.
-fn near_obstacles(clear: ptr<function, Clear>, surface: f32, strand: Strand, edge: Edge, length: f32) -> u32 {
+/// The square of what a vertex, at this place from the root, has moved past the head.
+fn past_head(strand: Strand, place: vec3<f32>, moved: vec3<f32>) -> f32 {
+    let before = strand.root_now + step.center_displacement + place - moved;
+    let past = moved - moved_with_head(before);
+    return dot(past, past);
+}
+
+/// The set of colliders that an edge of a sweep, from `u` to `v`, may touch; see `bit_of`. `past` is what `past_head` says of its ends, the larger, and
+/// `surface` how far colliders have moved by themselves at most.
+fn near_obstacles(clear: ptr<function, Clear>, surface: f32, past: f32, strand: Strand, u: vec3<f32>, v: vec3<f32>, length: f32) -> u32 {
     (*clear).distance -= length;
     (*clear).others -= length;
-    let longest = (past_head(edge) + surface) / SURE;
-    if (min((*clear).distance, (*clear).others) > longest) { return 0u; }
+    let room = SURE * min((*clear).distance, (*clear).others) - surface;
+    if (room > 0.0 && room * room > past) { return 0u; }
+    let longest = (sqrt(past) + surface) / SURE;
+    let middle = rotate_back(step.head_rotation, strand.root_now + 0.5 * (u + v));
+    let piece = Piece(u, v, middle, length, longest);
     if ((*clear).others > longest) {
         // Only the nearest is within reach.
-        let distance = distance_from((*clear).nearest, strand.root_now, edge, length);
+        let distance = distance_from((*clear).nearest, strand.root_now, piece);
         (*clear).distance = distance - length;
         return select(0u, bit_of((*clear).nearest), distance <= longest);
     }
     var found = 0u;
     var nearest = Clear(step.first_capsule, FAR, FAR);
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let distance = distance_from(i, strand.root_now, edge, length);
+        let distance = distance_from(i, strand.root_now, piece);
         if (distance <= longest) { found |= bit_of(i); }
         nearest.others = min(nearest.others, max(nearest.distance, distance));
         if (distance < nearest.distance) {
@@ -78,22 +88,19 @@ fn near_obstacles(clear: ptr<function, Clear>, surface: f32, strand: Strand, edg
     return found;
 }
 
-/// The most that an end of an edge has moved past the head.
-fn past_head(edge: Edge) -> f32 {
-    let u_past = edge.u_moved - moved_with_head(edge.u_before);
-    let v_past = edge.v_moved - moved_with_head(edge.v_before);
-    return sqrt(max(dot(u_past, u_past), dot(v_past, v_past)));
-}
+/// An edge: its ends from the root, its middle in the space of the head, and how far anything on it has moved past colliders at most.
+struct Piece { u: vec3<f32>, v: vec3<f32>, middle: vec3<f32>, length: f32, longest: f32 }
 
-/// How far an edge is from a collider, or less: by so much a point of it can move in any direction and not touch it.
-fn distance_from(index: u32, root: vec3<f32>, edge: Edge, length: f32) -> f32 {
+/// How far an edge is from a collider, or less: by so much a point of it can move in any direction and not touch it. Most are so far that their
+/// distance from its middle is enough.
+fn distance_from(index: u32, root: vec3<f32>, edge: Piece) -> f32 {
     @if(fields) {
         if (is_field(colliders[index].capsule)) {
-            let middle = rotate_back(step.head_rotation, root + 0.5 * (edge.u + edge.v));
-            return SLOPE * sample_of(colliders[index].capsule, middle).distance - 0.5 * length;
+            return SLOPE * sample_of(colliders[index].capsule, edge.middle).distance - 0.5 * edge.length;
         }
     }
-    let capsule = capsule_at(root, index);
-    let gap = nearest_points(capsule, edge.u, edge.v).gap;
-    return min(gap, SURE * gap / (1.0 + taper_of(capsule)));
+    let from_middle = SURE * clearance(colliders[index], edge.middle) - 0.5 * edge.length;
+    if (from_middle > edge.longest) { return from_middle; }
+    let gap = nearest_points(capsule_at(root, index), edge.u, edge.v).gap;
+    return min(gap, SURE * gap * colliders[index].motion.clear_share);
 }

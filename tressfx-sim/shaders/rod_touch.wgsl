@@ -8,7 +8,7 @@ import package::rod_contact::Edge;
 import package::rod_contact::{Touch, contacts_of, nothing_touched, packed_direction, unpacked_direction};
 import package::rod_near::Range;
 @if(contacts)
-import package::rod_near::{is_in, near_obstacles, nothing_known};
+import package::rod_near::{is_in, near_obstacles, nothing_known, past_head};
 import package::step::step;
 
 /// The edges that were near a collider at the end of the last sub-step.
@@ -47,18 +47,23 @@ struct Found { near: bool, touching: bool, deep: bool }
 fn note_touches(strand: Strand, range: Range, surface: f32) -> bool {
     var is_new = false;
     var clear = nothing_known();
+    var past_before = 0.0;
     for (var vertex = range.first; vertex <= range.last; vertex++) {
         let u = positions[(vertex - 1u) * step.strands + strand.guide].xyz - strand.root_now;
         let v = positions[vertex * step.strands + strand.guide].xyz - strand.root_now;
         let u_moved = rods[moved_slot(strand, vertex - 1u, 0u)].xyz;
         let v_moved = rods[moved_slot(strand, vertex, 0u)].xyz;
         let last = last_touch(strand, vertex);
+        if (vertex == range.first) { past_before = past_head(strand, u, u_moved); }
+        let past = past_head(strand, v, v_moved);
+        let length = rest_before(strand, vertex).w;
+        let obstacles = near_obstacles(&clear, surface, max(past_before, past), strand, u, v, length);
         let edge = edge_between(strand, u, v, u_moved, v_moved);
-        let obstacles = near_obstacles(&clear, surface, strand, edge, rest_before(strand, vertex).w);
         let touch = contacts_of(strand.root_now, edge, last, obstacles, 1.0).touch;
         is_new = is_new || (touch.obstacle > 0u && touch.obstacle != last.obstacle);
         rods[slot(strand, vertex, TOUCH)] = vec4(touch.stretch, packed_direction(touch.normal));
         rods[slot(strand, vertex, STRAIN)].w = f32(touch.obstacle);
+        past_before = past;
     }
     return is_new;
 }

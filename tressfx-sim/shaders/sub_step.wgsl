@@ -137,8 +137,8 @@ fn is_end(round: Round, found: Found) -> bool {
     return is_calm && !(found.touching && (round.count < TOUCHING_ROUNDS || found.deep));
 }
 
-/// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no more than to where an edge
-/// may touch something.
+/// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no
+/// more than to where an edge may touch something.
 fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
     var round = so_far;
     while (may_go_on(strand, round)) {

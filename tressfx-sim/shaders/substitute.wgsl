@@ -9,9 +9,7 @@ import package::step::step;
 import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
-import package::rod_near::{Range, near_obstacles, no_edge, nothing_known};
-@if(colliders)
-import package::rod_touch::edge_between;
+import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, past_head};
 
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
@@ -106,6 +104,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     var speed_before = vec3(0.0);
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
+    @if(colliders) var past_before = past_head(strand, start.place, start.moving);
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
         let length = here.rest.w;
@@ -120,8 +119,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
         let by = here.by + turned_by(rotation, along(here.now));
-        let moving_before = round.moving;
-        let place_before = round.place;
+        @if(colliders) let place_before = round.place;
         shift += length * cross(turn, along(here.now));
         round.moving += length * by;
         round.place += length * along(now);
@@ -129,9 +127,11 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         rods[slot(strand, vertex, FRAME)] = now;
         rods[slot(strand, vertex, TURNED)] = vec4(by, 0.0);
         @if(colliders) {
-            let edge = edge_between(strand, place_before, round.place, moving_before, round.moving);
-            let obstacles = near_obstacles(&clear, start.surface, strand, edge, length);
+            let past = past_head(strand, round.place, round.moving);
+            let longest = max(past_before, past);
+            let obstacles = near_obstacles(&clear, start.surface, longest, strand, place_before, round.place, length);
             if (obstacles != 0u) { near = Range(min(near.first, vertex), vertex); }
+            past_before = past;
         }
         if (round.longest <= limit) {
             rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, here.moved.w);

@@ -205,9 +205,17 @@ gpu_struct! {
         pub rotation: glam::Vec4,
         /// The translation.
         pub translation: Vec3,
-        /// Nothing.
-        pub padding: f32,
+        /// Of the capsule, where there is room for it: the share of the distance from its surface that a point can move in any direction
+        /// and not come inside. The radius of a tapered one changes along its axis.
+        pub clear_share: f32,
     }
+}
+
+/// See [`GpuCapsuleMotion::clear_share`].
+fn clear_share(shape: PlacedShape) -> f32 {
+    let PlacedShape::Capsule(Capsule { a, b, radius_a, radius_b }) = shape else { return 1.0 };
+    let axis = a.distance(b);
+    if axis > 0.0 { axis / (axis + (radius_b - radius_a).abs()) } else { 1.0 }
 }
 
 gpu_struct! {
@@ -239,7 +247,7 @@ impl<S: Into<PlacedShape>> FromIterator<(S, CapsuleMotion)> for ColliderList {
 impl ColliderList {
     fn push(&mut self, shape: PlacedShape, motion: CapsuleMotion) {
         let CapsuleMotion { rotation, translation } = motion;
-        let motion = GpuCapsuleMotion { rotation: rotation.into(), translation, padding: 0.0 };
+        let motion = GpuCapsuleMotion { rotation: rotation.into(), translation, clear_share: clear_share(shape) };
         self.colliders.push(GpuCollider { capsule: GpuCapsule::new(shape), motion });
     }
 
