@@ -41,8 +41,8 @@ const BEGIN: u32 = GUESS;
 const LENGTHS: u32 = TOUCH;
 /// the force that holds a pinned tip.
 const HOLDING: u32 = LEFT;
-/// Others of its slots are a list of the strands that `direct` has left to `direct_near`, the first one in those of the first strand: its guide, how many rounds it has
-/// done, and its range of edges that may touch something;
+/// Others of its slots are a list of the strands that `direct` has left to `direct_near`, the first one in those of the first strand: its guide,
+/// how many rounds it has done, and its range of edges that may touch something;
 const LISTED: u32 = 9u;
 /// what the tip is moved by where edges take their guesses, and the longest rotation of an edge in the last of these rounds.
 const SO_FAR: u32 = 10u;
