@@ -18,7 +18,7 @@ import package::rod::push_slot;
 @if(contacts)
 import package::rod_contact::contacts_of;
 @if(colliders)
-import package::rod_near::{Range, is_in, near_obstacles, nothing_known, past_head};
+import package::rod_near::{Range, is_in, near_obstacles, nothing_known, squared_past_head};
 import package::rod_touch::Found;
 @if(contacts)
 import package::rod_touch::{edge_between, last_touch};
@@ -38,7 +38,7 @@ struct Begin {
     parent: vec4<f32>,
     /// The edges that may touch something.
     @if(colliders) near: Range,
-    /// The most that the surface of any capsule has moved past the head.
+    /// The most that the surface of any collider has moved past the head.
     @if(colliders) surface: f32,
 }
 
@@ -150,8 +150,8 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         mixed += by_arm;
         @if(colliders) {
             if (is_in(begin.near, vertex)) {
-                if (vertex == min(begin.near.last, tip)) { past_after = past_head(strand, end_at, end_moving); }
-                let past = past_head(strand, at, moving);
+                if (vertex == min(begin.near.last, tip)) { past_after = squared_past_head(strand, end_at, end_moving); }
+                let past = squared_past_head(strand, at, moving);
                 let obstacles = near_obstacles(&clear, begin.surface, max(past, past_after), strand, at, end_at, length);
                 past_after = past;
                 @if(!contacts) {

@@ -37,7 +37,7 @@ const TOUCH: u32 = 15u;
 /// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved where the edges behind
 /// the first free one take their guesses, and `Marks`;
 const BEGIN: u32 = GUESS;
-/// the lengths of the last two sub-steps, and the first and the last vertex behind an edge that was near a capsule;
+/// the lengths of the last two sub-steps, and the first and the last vertex behind an edge that was near a collider;
 const LENGTHS: u32 = TOUCH;
 /// the force that holds a pinned tip.
 const HOLDING: u32 = LEFT;

@@ -51,33 +51,33 @@ fn surface_way(strand: Strand) -> f32 {
 }
 
 /// The square of what a vertex, at this place from the root, has moved past the head.
-fn past_head(strand: Strand, place: vec3<f32>, moved: vec3<f32>) -> f32 {
+fn squared_past_head(strand: Strand, place: vec3<f32>, moved: vec3<f32>) -> f32 {
     let before = strand.root_now + step.center_displacement + place - moved;
     let past = moved - moved_with_head(before);
     return dot(past, past);
 }
 
-/// The set of colliders that an edge of a sweep, from `u` to `v`, may touch; see `bit_of`. `past` is what `past_head` says of its ends, the larger, and
+/// The set of colliders that an edge of a sweep, from `u` to `v`, may touch; see `bit_of`. `past` is what `squared_past_head` says of its ends, the larger, and
 /// `surface` how far colliders have moved by themselves at most.
 fn near_obstacles(clear: ptr<function, Clear>, surface: f32, past: f32, strand: Strand, u: vec3<f32>, v: vec3<f32>, length: f32) -> u32 {
     (*clear).distance -= length;
     (*clear).others -= length;
     let room = SURE * min((*clear).distance, (*clear).others) - surface;
     if (room > 0.0 && room * room > past) { return 0u; }
-    let longest = (sqrt(past) + surface) / SURE;
+    let way = (sqrt(past) + surface) / SURE;
     let middle = rotate_back(step.head_rotation, strand.root_now + 0.5 * (u + v));
-    let piece = Piece(u, v, middle, length, longest);
-    if ((*clear).others > longest) {
+    let piece = Piece(u, v, middle, length, way);
+    if ((*clear).others > way) {
         // Only the nearest is within reach.
         let distance = distance_from((*clear).nearest, strand.root_now, piece);
         (*clear).distance = distance - length;
-        return select(0u, bit_of((*clear).nearest), distance <= longest);
+        return select(0u, bit_of((*clear).nearest), distance <= way);
     }
     var found = 0u;
     var nearest = Clear(step.first_capsule, FAR, FAR);
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
         let distance = distance_from(i, strand.root_now, piece);
-        if (distance <= longest) { found |= bit_of(i); }
+        if (distance <= way) { found |= bit_of(i); }
         nearest.others = min(nearest.others, max(nearest.distance, distance));
         if (distance < nearest.distance) {
             nearest.distance = distance;
@@ -89,7 +89,7 @@ fn near_obstacles(clear: ptr<function, Clear>, surface: f32, past: f32, strand: 
 }
 
 /// An edge: its ends from the root, its middle in the space of the head, and how far anything on it has moved past colliders at most.
-struct Piece { u: vec3<f32>, v: vec3<f32>, middle: vec3<f32>, length: f32, longest: f32 }
+struct Piece { u: vec3<f32>, v: vec3<f32>, middle: vec3<f32>, length: f32, way: f32 }
 
 /// How far an edge is from a collider, or less: by so much a point of it can move in any direction and not touch it. Most are so far that their
 /// distance from its middle is enough.
@@ -100,7 +100,7 @@ fn distance_from(index: u32, root: vec3<f32>, edge: Piece) -> f32 {
         }
     }
     let from_middle = SURE * clearance(colliders[index], edge.middle) - 0.5 * edge.length;
-    if (from_middle > edge.longest) { return from_middle; }
+    if (from_middle > edge.way) { return from_middle; }
     let gap = nearest_points(capsule_at(root, index), edge.u, edge.v).gap;
     return min(gap, SURE * gap * colliders[index].motion.clear_share);
 }

@@ -8,7 +8,7 @@ import package::rod_contact::Edge;
 import package::rod_contact::{Touch, contacts_of, nothing_touched, packed_direction, unpacked_direction};
 import package::rod_near::Range;
 @if(contacts)
-import package::rod_near::{is_in, near_obstacles, nothing_known, past_head};
+import package::rod_near::{is_in, near_obstacles, nothing_known, squared_past_head};
 import package::step::step;
 
 /// The edges that were near a collider at the end of the last sub-step.
@@ -54,8 +54,8 @@ fn note_touches(strand: Strand, range: Range, surface: f32) -> bool {
         let u_moved = rods[moved_slot(strand, vertex - 1u, 0u)].xyz;
         let v_moved = rods[moved_slot(strand, vertex, 0u)].xyz;
         let last = last_touch(strand, vertex);
-        if (vertex == range.first) { past_before = past_head(strand, u, u_moved); }
-        let past = past_head(strand, v, v_moved);
+        if (vertex == range.first) { past_before = squared_past_head(strand, u, u_moved); }
+        let past = squared_past_head(strand, v, v_moved);
         let length = rest_before(strand, vertex).w;
         let obstacles = near_obstacles(&clear, surface, max(past_before, past), strand, u, v, length);
         let edge = edge_between(strand, u, v, u_moved, v_moved);

@@ -9,7 +9,7 @@ import package::step::step;
 import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
-import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, past_head};
+import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, squared_past_head};
 
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f32 = 1.5;
@@ -25,7 +25,7 @@ struct Start {
     moving: vec3<f32>,
     place: vec3<f32>,
     parent: vec4<f32>,
-    /// The most that the surface of any capsule has moved past the head.
+    /// The most that the surface of any collider has moved past the head.
     @if(colliders) surface: f32,
 }
 
@@ -104,7 +104,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
     var speed_before = vec3(0.0);
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
-    @if(colliders) var past_before = past_head(strand, start.place, start.moving);
+    @if(colliders) var past_before = squared_past_head(strand, start.place, start.moving);
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = hung(strand, vertex, is_first_round);
         let length = here.rest.w;
@@ -127,9 +127,9 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         rods[slot(strand, vertex, FRAME)] = now;
         rods[slot(strand, vertex, TURNED)] = vec4(by, 0.0);
         @if(colliders) {
-            let past = past_head(strand, round.place, round.moving);
-            let longest = max(past_before, past);
-            let obstacles = near_obstacles(&clear, start.surface, longest, strand, place_before, round.place, length);
+            let past = squared_past_head(strand, round.place, round.moving);
+            let more = max(past_before, past);
+            let obstacles = near_obstacles(&clear, start.surface, more, strand, place_before, round.place, length);
             if (obstacles != 0u) { near = Range(min(near.first, vertex), vertex); }
             past_before = past;
         }

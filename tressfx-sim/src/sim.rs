@@ -388,7 +388,7 @@ impl HairSim {
         Ok(())
     }
 
-    /// Records one kernel of all sections, or nothing where a section has none. [`HairSim::step`] does this; tests and
+    /// Records one stage of all sections, or nothing where a section has none. [`HairSim::step`] does this; tests and
     /// measurements of single kernels do it themselves.
     pub fn record_stage(&self, list: &mut PassList, stage: Stage) {
         self.record_stage_at(list, stage, ALONE);

@@ -2,7 +2,7 @@
 
 use tressfx_core::error::Label;
 
-/// A step of the simulation: one kernel over the strands of each section.
+/// A step of the simulation: one kernel over the strands of each section, but for [`Stage::Direct`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -10,7 +10,8 @@ pub enum Stage {
     Roots,
     /// All of a sub-step of the method of TressFX; or the reset to the rest pose.
     TressFx,
-    /// All of a sub-step of rods; or the reset to the rest pose.
+    /// All of a sub-step of rods; or the reset to the rest pose. With room for colliders it is a clear of the list of strands that may touch
+    /// one, `hair.sim.direct`, and `hair.sim.direct_near` for these.
     Direct,
     /// Mass and momentum of the strands at the nodes of a grid; this and the next two where hair meets hair.
     VolumeSplat,
@@ -23,7 +24,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// The label of its pass.
+    /// The label of its pass; of the first one, where there are two.
     pub fn label(self) -> Label {
         match self {
             Self::Roots => "hair.sim.roots",
