@@ -14,10 +14,10 @@ struct Fibre {
 
 // Lobes of a white fibre, and the radii that light of the last three goes within it.
 struct Lobes {
-    // Along the fibre the first is the square of what light is divided by on its way to the eye.
+    // Along the fibre the first is `e`: what is caught between scales, and leaves evenly.
     white: vec4<f32>,
     paths: vec3<f32>,
-    // The square of what light is divided by on its way in.
+    // The square of what light is divided by.
     g_square: f32,
 }
 
@@ -29,9 +29,9 @@ const COLUMNS: u32 = 64u;
 const ROWS: u32 = 16u;
 const POLES: u32 = 64u;
 
-// Of R, TT, TRT and what is mirrored more often: the variance in that of R, and by how many tilts the eye is turned.
+// Of R, TT, TRT and what is mirrored more often: the variance in that of R, and by how many tilts light and eye are turned each.
 const VARIANCES: vec4<f32> = vec4(1.0, 0.25, 4.0, 4.0);
-const SHIFTS: vec4<f32> = vec4(2.0, -1.0, -3.0, 0.0);
+const TURNS: vec4<f32> = vec4(1.0, -0.5, -1.5, 0.0);
 
 fn unpacked(index: u32) -> array<vec4<f32>, 2> {
     let all = fibre_table[index];
@@ -87,10 +87,8 @@ fn bessel(x: f32) -> f32 {
 }
 
 // Angles as sine and cosine.
-fn turned(angle: vec2<f32>, by: f32) -> vec2<f32> {
-    let s = sin(by);
-    let c = cos(by);
-    return vec2(angle.x * c + angle.y * s, angle.y * c - angle.x * s);
+fn turned(angle: vec2<f32>, by: vec2<f32>) -> vec2<f32> {
+    return vec2(angle.x * by.y + angle.y * by.x, angle.y * by.y - angle.x * by.x);
 }
 
 // The lobe along the fibre.
@@ -159,16 +157,21 @@ fn scatter(fibre: Fibre, eye: vec3<f32>, light: vec3<f32>, fibres: f32) -> vec3<
     let cos_phi = clamp((dot(eye, light) - i.x * r.x) / max(i.y * r.y, 1e-6), -1.0, 1.0);
     let cos_theta_d = sqrt(clamp(0.5 + 0.5 * dot(i, r), 0.0, 1.0));
     let around = lobes_around(cos_phi, cos_theta_d);
+    let along_i = lobes_along(i.x);
+    let along_r = lobes_along(r.x);
     let before = passed(fibre, i.y);
     // Light that was scattered on its way comes from around the light.
     var lobes = mix(before.white / (2.0 * PI), around.white, exp(-fibres));
     let spread = VARIANCES[1] * fibres;
     for (var p = 0u; p < 4u; p++) {
-        lobes[p] *= lobe((VARIANCES[p] + spread) * fibre.variance, i, turned(r, SHIFTS[p] * fibre.tilt));
+        let by = TURNS[p] * fibre.tilt;
+        let turn = vec2(sin(by), cos(by));
+        lobes[p] *= lobe((VARIANCES[p] + spread) * fibre.variance, turned(i, turn), turned(r, turn));
     }
+    lobes.y += along_i.white.x * along_r.white.x / (2.0 * PI);
     let back = lobe((2.0 * VARIANCES[1] + VARIANCES[2] + spread) * fibre.variance, i, r) * (1.0 + cos_phi) / (2.0 * PI);
     let single = colored(lobes, around.paths, fibre.absorption);
-    let scale = PI * i.y * inverseSqrt(lobes_along(i.x).g_square * lobes_along(r.x).white.x);
+    let scale = PI * i.y * inverseSqrt(along_i.g_square * along_r.g_square);
     return scale * power(before.on, fibres) * (single + back * before.behind);
 }
 

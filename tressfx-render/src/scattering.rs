@@ -6,13 +6,15 @@
 //! fibre, is the integral over all directions of
 //!
 //! ```text
-//! L(i) cos(theta_i) / (g(theta_i) n(theta_r))  sum over p of  M_p(theta_i, theta_r) N_p(phi, theta_d)
+//! L(i) cos(theta_i) / (g(theta_i) g(theta_r))  (e(theta_i) e(theta_r) / 2 PI + sum over p of  M_p(theta_i, theta_r) N_p(phi, theta_d))
 //! ```
 //!
 //! `M` is the lobe along the fibre that d'Eon et al. 2011 have derived, `N` the mean over the width of Fresnel's factors and absorption around it, with
-//! the logistic detector and the fourth lobe of Chiang et al. 2015. Without tilt `n` is `g`, and `g` is such that a white fibre in white light from everywhere is
-//! white from any direction: so light and eye may change places, and no energy is lost or made. Scales that tilt shift the eye (`SHIFTS`). No factors of `theta_i`
-//! and of `theta_r` keep both properties of lobes that are shifted; `n` keeps the white fibre white.
+//! the logistic detector and the fourth lobe of Chiang et al. 2015. Scales that tilt turn light and eye by half of the shift that Marschner et al.
+//! give a lobe (`TURNS`), so that they may change places. `g` is such that a white fibre in white light from everywhere is white from any direction; where
+//! scales tilt, it may be less than white, since they move light between directions of which one has more others around it. What is lacking then
+//! is the term of `e`: light that is caught between scales leaves evenly, with the pigment that it met in TT. As for rough surfaces (Kulla and Conty 2017), a product
+//! of what light and eye lack each makes up for all of it: no energy is lost or made, and light and eye may still change places.
 
 mod azimuthal;
 mod dielectric;
@@ -27,4 +29,4 @@ pub(crate) use pigment::{
     MAX_ABSORPTION, absorption_of_color, absorption_of_melanin, color_of_absorption, pigmentation,
 };
 pub use table::FibreTable;
-pub(crate) use table::{ENTRIES, SHIFTS, Shape};
+pub(crate) use table::{ENTRIES, Shape, TURNS};

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use crate::scattering::{FibreTable, SHIFTS, lobe};
+use crate::scattering::{FibreTable, TURNS, lobe};
 
 /// A fibre of hair at a vertex.
 pub(super) struct Fibre<'a> {
@@ -70,14 +70,17 @@ impl Fibre<'_> {
         let cos_d = (0.5 + 0.5 * (i[0] * r[0] + i[1] * r[1])).clamp(0.0, 1.0).sqrt();
         let (around, passed) = (self.table.around(cos_phi, cos_d), self.passed(i[1]));
         let (direct, spread) = ((-fibres).exp(), fibres * self.variances[1]);
-        let lobes = std::array::from_fn(|p| {
+        let (along_i, along_r) = (self.table.along(i[0]), self.table.along(r[0]));
+        let mut lobes: [f64; 4] = std::array::from_fn(|p| {
             let even = passed.white[p] / TAU;
-            let along = lobe(self.variances[p] + spread, i, turned(r, SHIFTS[p] * self.tilt));
+            let turn = TURNS[p] * self.tilt;
+            let along = lobe(self.variances[p] + spread, turned(i, turn), turned(r, turn));
             (even + direct * (around[p] - even)) * along
         });
+        lobes[1] += along_i[0] * along_r[0] / TAU;
         let back = lobe(2.0 * self.variances[1] + self.variances[2] + spread, i, r) * (1.0 + cos_phi) / TAU;
         let single = colored(lobes, [around[4], around[5], around[6]], self.absorption);
-        let scale = PI * i[1] / (self.table.along(i[0])[7] * self.table.along(r[0])[0]).sqrt();
+        let scale = PI * i[1] / (along_i[7] * along_r[7]).sqrt();
         scale * passed.on.powf(fibres) * (single + back * passed.behind)
     }
 
@@ -172,21 +175,50 @@ mod tests {
     }
 
     #[test]
-    fn light_and_eye_may_change_places_where_scales_do_not_tilt() {
-        let material = material(0.4, 0.3, 0.0);
-        let table = FibreTable::of(&material).unwrap();
-        let fibre = fibre(&table, &material, 0.3);
-        let mut worst = 0.0f64;
-        for k in 0..2000u32 {
-            let angle = |factor: f64, range: f64| range * ((f64::from(k) * factor).fract() - 0.5);
-            let [a, b] =
-                [direction(angle(0.618, PI), angle(0.324, TAU)), direction(angle(0.755, PI), angle(0.569, TAU))];
-            // For a unit of the light that falls on the length of a fibre.
-            let on = |direction: DVec3| (1.0 - direction.z * direction.z).sqrt();
-            let (there, back) = (fibre.scatter(a, b, 0.0).x / on(b), fibre.scatter(b, a, 0.0).x / on(a));
-            worst = worst.max((there - back).abs() / there.max(1e-9));
+    fn light_and_eye_may_change_places() {
+        for (roughness, tilt) in [0.1, 0.4, 0.8].into_iter().zip(TILTS) {
+            let material = material(roughness, 0.3, tilt);
+            let table = FibreTable::of(&material).unwrap();
+            let fibre = fibre(&table, &material, 0.3);
+            let mut worst = 0.0f64;
+            for k in 0..2000u32 {
+                let angle = |factor: f64, range: f64| range * ((f64::from(k) * factor).fract() - 0.5);
+                let [a, b] =
+                    [direction(angle(0.618, PI), angle(0.324, TAU)), direction(angle(0.755, PI), angle(0.569, TAU))];
+                // For a unit of the light that falls on the length of a fibre.
+                let on = |direction: DVec3| (1.0 - direction.z * direction.z).sqrt();
+                let (there, back) = (fibre.scatter(a, b, 0.0).x / on(b), fibre.scatter(b, a, 0.0).x / on(a));
+                worst = worst.max((there - back).abs() / there.max(1e-9));
+            }
+            assert!(worst < 1e-9, "{tilt}: {worst}");
         }
-        assert!(worst < 1e-9, "{worst}");
+    }
+
+    /// Where light from `theta_i` is mirrored to most, in the plane of light and fibre.
+    fn brightest(fibre: &Fibre, theta_i: f64) -> f64 {
+        let light = direction(theta_i, 0.0);
+        let at = |k: u32| PI * (f64::from(k) / 4000.0 - 0.5);
+        let seen = |k: &u32| fibre.scatter(direction(at(*k), 0.0), light, 0.0).x;
+        at((1..4000).max_by(|a, b| seen(a).total_cmp(&seen(b))).unwrap())
+    }
+
+    /// What keeps white fibres white must not take the tilt away (Marschner et al. 2003: the highlight moves by twice the tilt).
+    #[test]
+    fn scales_that_tilt_move_the_highlight() {
+        let highlights = |tilt: f32| {
+            let material = material(0.1, 0.3, tilt);
+            let table = FibreTable::of(&material).unwrap();
+            // Pigment takes all that goes through.
+            let fibre = fibre(&table, &material, 100.0);
+            [-0.8, -0.3, 0.0, 0.5, 0.9].map(|theta| brightest(&fibre, theta))
+        };
+        let straight = highlights(0.0);
+        for tilt in [-4.0, 2.0, 4.0f32] {
+            let shift = -2.0 * f64::from(tilt.to_radians());
+            let shares: Vec<f64> =
+                highlights(tilt).iter().zip(straight).map(|(at, before)| (at - before) / shift).collect();
+            assert!(shares.iter().all(|share| (share - 1.0).abs() < 0.15), "{tilt}: {shares:?} of {shift}");
+        }
     }
 
     #[test]

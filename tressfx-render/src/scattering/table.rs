@@ -27,11 +27,11 @@ const ROUNDS: usize = 24;
 /// The absorption at which a lobe has exactly the colour of its path.
 const MEASURED: f64 = 0.5;
 
-/// By how many tilts the direction of the eye is turned, for each lobe (Marschner et al. 2003). R goes towards the root.
-pub(crate) const SHIFTS: [f64; LOBES] = [2.0, -1.0, -3.0, 0.0];
+/// By how many tilts light and eye are turned each, for each lobe (Marschner et al. 2003). R goes towards the root.
+pub(crate) const TURNS: [f64; LOBES] = [1.0, -0.5, -1.5, 0.0];
 
-/// Eight numbers. Around the fibre: the lobes of a white fibre, the radii that light of the last three goes within it, and 0. Along it: the square of
-/// what the light to the eye is divided by, the last three lobes of a white fibre under a white sky, their radii, and the square of `g`.
+/// Eight numbers. Around the fibre: the lobes of a white fibre, the radii that light of the last three goes within it, and 0. Along it: `e`,
+/// the last three lobes of a white fibre under a white sky, their radii, and the square of `g`.
 pub(crate) type Entry = [f64; 8];
 
 /// What a table depends on.
@@ -179,60 +179,112 @@ fn turned(theta: f64) -> [f64; 2] {
 /// The lobes along a fibre, for all pairs of angles.
 struct Along<'a> {
     variances: [f64; LOBES],
+    tilt: f64,
     shares: &'a [[[f64; LOBES]; 2]],
 }
 
 impl Along<'_> {
-    /// What goes from the angle `from` to the angle `to` by each lobe, white and where something is taken.
-    fn lobes(&self, from: f64, to: f64, tilt: f64) -> [[f64; LOBES]; 2] {
-        let lobes: [f64; LOBES] =
-            std::array::from_fn(|p| lobe(self.variances[p], turned(from), turned(to + SHIFTS[p] * tilt)));
+    /// Shares of the lobes between two angles, white and where something is taken.
+    fn shares(&self, from: f64, to: f64) -> [[f64; LOBES]; 2] {
         let (row, share) = between((0.5 * (to - from)).cos(), ROWS);
         [0, 1].map(|k| {
             let [low, high] = [row, row + 1].map(|row| self.shares[row][k]);
-            std::array::from_fn(|p| lobes[p] * (low[p] + share * (high[p] - low[p])))
+            std::array::from_fn(|p| low[p] + share * (high[p] - low[p]))
         })
+    }
+
+    /// What goes from the angle `from` to the angle `to` by each lobe, and back.
+    fn lobes(&self, from: f64, to: f64) -> [[f64; LOBES]; 2] {
+        let turned = |theta: f64, p: usize| turned(theta + TURNS[p] * self.tilt);
+        let lobes: [f64; LOBES] = std::array::from_fn(|p| lobe(self.variances[p], turned(from, p), turned(to, p)));
+        self.shares(from, to).map(|shares| std::array::from_fn(|p| lobes[p] * shares[p]))
+    }
+
+    /// All lobes of a white fibre.
+    fn white(&self, from: f64, to: f64) -> f64 {
+        self.lobes(from, to)[0].iter().sum()
     }
 }
 
-/// 1 / `g` at angles along the fibre: what a symmetric matrix is scaled by from both sides so that all of its sums are 1 (Sinkhorn
-/// and Knopp 1967).
-fn scales(lobes: &Along, thetas: &[f64], measure: &[f64]) -> Vec<f64> {
+/// The light of a white fibre that leaves by its lobes, at angles that integrals are made of.
+struct Balance {
+    thetas: Vec<f64>,
+    measure: Vec<f64>,
+    /// What a direction's light is multiplied by, 1 / `g`.
+    scales: Vec<f64>,
+    /// The share of the light of each direction that its lobes lack.
+    lacking: Vec<f64>,
+    /// All that they lack.
+    all_lacking: f64,
+}
+
+impl Balance {
+    /// Without tilt a symmetric matrix is scaled from both sides so that all of its sums are 1 (Sinkhorn and Knopp 1967). Scales that tilt
+    /// move light between directions of which one has more others around it, and to scale that away would take the tilt away. So what
+    /// is too much is scaled down, from both sides again, and what is too little is lacking.
+    fn new(lobes: &Along) -> Self {
+        let thetas: Vec<f64> = (0..ANGLES).map(|k| PI * ((k as f64 + 0.5) / ANGLES as f64 - 0.5)).collect();
+        let measure: Vec<f64> = thetas.iter().map(|theta| theta.cos().powi(2) * PI / ANGLES as f64).collect();
+        let mut scales = vec![1.0; ANGLES];
+        let straight = matrix(&Along { tilt: 0.0, ..*lobes }, &thetas);
+        for _ in 0..ROUNDS {
+            let sums = sums(&straight, &scales, &measure);
+            scales.iter_mut().zip(sums).for_each(|(scale, sum)| *scale /= sum.sqrt());
+        }
+        let tilted = matrix(lobes, &thetas);
+        for _ in 0..ROUNDS {
+            let sums = sums(&tilted, &scales, &measure);
+            scales.iter_mut().zip(sums).for_each(|(scale, sum)| *scale /= sum.max(1.0).sqrt());
+        }
+        let lacking: Vec<f64> = sums(&tilted, &scales, &measure).iter().map(|sum| (1.0 - sum).max(0.0)).collect();
+        let all_lacking = lacking.iter().zip(&measure).map(|(lacking, measure)| lacking * measure).sum();
+        Self { thetas, measure, scales, lacking, all_lacking }
+    }
+}
+
+fn matrix(lobes: &Along, thetas: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; ANGLES * ANGLES];
     for (i, j) in (0..ANGLES).flat_map(|i| (i..ANGLES).map(move |j| (i, j))) {
-        let sum: f64 = lobes.lobes(thetas[i], thetas[j], 0.0)[0].iter().sum();
-        (all[i * ANGLES + j], all[j * ANGLES + i]) = (sum, sum);
+        let white = lobes.white(thetas[i], thetas[j]);
+        (all[i * ANGLES + j], all[j * ANGLES + i]) = (white, white);
     }
-    let mut scales = vec![1.0; ANGLES];
-    for _ in 0..ROUNDS {
-        let weighted: Vec<f64> = scales.iter().zip(measure).map(|(scale, measure)| scale * measure).collect();
-        for (scale, row) in scales.iter_mut().zip(all.chunks_exact(ANGLES)) {
-            let sum: f64 = row.iter().zip(&weighted).map(|(lobes, weight)| lobes * weight).sum();
-            *scale = (*scale / sum).sqrt();
-        }
-    }
-    scales
+    all
+}
+
+/// What leaves towards each angle under a white sky.
+fn sums(matrix: &[f64], scales: &[f64], measure: &[f64]) -> Vec<f64> {
+    let weights: Vec<f64> = scales.iter().zip(measure).map(|(scale, measure)| scale * measure).collect();
+    let row = |row: &[f64]| row.iter().zip(&weights).map(|(lobes, weight)| lobes * weight).sum::<f64>();
+    matrix.chunks_exact(ANGLES).zip(scales).map(|(lobes, scale)| scale * row(lobes)).collect()
 }
 
 fn along(shape: &Shape, shares: &[[[f64; LOBES]; 2]]) -> Vec<Entry> {
-    let lobes = Along { variances: variances(f64::from(shape.roughness)), shares };
     let tilt = f64::from(if shape.tilt.is_finite() { shape.tilt } else { 0.0 });
-    let thetas: Vec<f64> = (0..ANGLES).map(|k| PI * ((k as f64 + 0.5) / ANGLES as f64 - 0.5)).collect();
-    let measure: Vec<f64> = thetas.iter().map(|theta| theta.cos().powi(2) * PI / ANGLES as f64).collect();
-    let scales = scales(&lobes, &thetas, &measure);
-    let pole = |k: usize| {
-        let theta = FRAC_PI_2 - angle(k as f64 / (POLES - 1) as f64);
-        let (mut g, mut white, mut left) = (0.0, [0.0; LOBES], [0.0; LOBES]);
-        for ((&from, scale), measure) in thetas.iter().zip(&scales).zip(&measure) {
-            g += scale * measure * lobes.lobes(from, theta, 0.0)[0].iter().sum::<f64>();
-            let seen = lobes.lobes(from, theta, tilt);
-            (0..LOBES).for_each(|p| white[p] += scale * measure * seen[0][p]);
-            (0..LOBES).for_each(|p| left[p] += scale * measure * seen[1][p]);
-        }
-        let to_eye: f64 = white.iter().sum();
-        let mut entry = entry(white.map(|x| x / to_eye), left.map(|x| x / to_eye), g * g);
-        entry[0] = to_eye * to_eye;
-        entry
-    };
-    (0..POLES).map(pole).collect()
+    let lobes = Along { variances: variances(f64::from(shape.roughness)), tilt, shares };
+    let balance = Balance::new(&lobes);
+    (0..POLES).map(|k| pole(&lobes, &balance, FRAC_PI_2 - angle(k as f64 / (POLES - 1) as f64))).collect()
+}
+
+fn pole(lobes: &Along, balance: &Balance, theta: f64) -> Entry {
+    let (first, share) =
+        between((theta / PI + 0.5 - 0.5 / ANGLES as f64) * ANGLES as f64 / (ANGLES - 1) as f64, ANGLES);
+    let lacking = balance.lacking[first] + share * (balance.lacking[first + 1] - balance.lacking[first]);
+    let (mut white, mut left, mut even) = ([0.0; LOBES], [0.0; LOBES], 0.0);
+    for (k, &from) in balance.thetas.iter().enumerate() {
+        let weight = balance.scales[k] * balance.measure[k];
+        let seen = lobes.lobes(from, theta);
+        (0..LOBES).for_each(|p| white[p] += weight * seen[0][p]);
+        (0..LOBES).for_each(|p| left[p] += weight * seen[1][p]);
+        let through = lobes.shares(from, theta).map(|shares| shares[1]);
+        even += balance.lacking[k] * balance.measure[k] * through[1] / through[0].max(1e-12);
+    }
+    let g = white.iter().sum::<f64>() / (1.0 - lacking).max(1e-6);
+    let (mut white, mut left) = (white.map(|x| x / g), left.map(|x| x / g));
+    if balance.all_lacking > 0.0 {
+        white[1] += lacking;
+        left[1] += lacking * even / balance.all_lacking;
+    }
+    let mut entry = entry(white, left, g * g);
+    entry[0] = if balance.all_lacking > 0.0 { g * lacking / balance.all_lacking.sqrt() } else { 0.0 };
+    entry
 }
