@@ -225,23 +225,17 @@ impl Balance {
     fn new(lobes: &Along) -> Self {
         let thetas: Vec<f64> = (0..ANGLES).map(|k| PI * ((k as f64 + 0.5) / ANGLES as f64 - 0.5)).collect();
         let measure: Vec<f64> = thetas.iter().map(|theta| theta.cos().powi(2) * PI / ANGLES as f64).collect();
-        let mut scales = vec![1.0; ANGLES];
         let straight = matrix(&Along { tilt: 0.0, ..*lobes }, &thetas);
-        for _ in 0..ROUNDS {
-            let sums = sums(&straight, &scales, &measure);
-            scales.iter_mut().zip(sums).for_each(|(scale, sum)| *scale /= sum.sqrt());
-        }
         let tilted = matrix(lobes, &thetas);
-        for _ in 0..ROUNDS {
-            let sums = sums(&tilted, &scales, &measure);
-            scales.iter_mut().zip(sums).for_each(|(scale, sum)| *scale /= sum.max(1.0).sqrt());
-        }
+        let scales = scaled(vec![1.0; ANGLES], &straight, &measure, 0.0);
+        let scales = scaled(scales, &tilted, &measure, 1.0);
         let lacking: Vec<f64> = sums(&tilted, &scales, &measure).iter().map(|sum| (1.0 - sum).max(0.0)).collect();
         let all_lacking = lacking.iter().zip(&measure).map(|(lacking, measure)| lacking * measure).sum();
         Self { thetas, measure, scales, lacking, all_lacking }
     }
 }
 
+/// All lobes of a white fibre between all pairs of angles: the same both ways.
 fn matrix(lobes: &Along, thetas: &[f64]) -> Vec<f64> {
     let mut all = vec![0.0; ANGLES * ANGLES];
     for (i, j) in (0..ANGLES).flat_map(|i| (i..ANGLES).map(move |j| (i, j))) {
@@ -258,6 +252,15 @@ fn sums(matrix: &[f64], scales: &[f64], measure: &[f64]) -> Vec<f64> {
     matrix.chunks_exact(ANGLES).zip(scales).map(|(lobes, scale)| scale * row(lobes)).collect()
 }
 
+/// Scales a symmetric matrix from both sides until its sums are 1, or at most 1 where `least` is 1: smaller ones are taken for it.
+fn scaled(mut scales: Vec<f64>, matrix: &[f64], measure: &[f64], least: f64) -> Vec<f64> {
+    for _ in 0..ROUNDS {
+        let sums = sums(matrix, &scales, measure);
+        scales.iter_mut().zip(sums).for_each(|(scale, sum)| *scale /= sum.max(least).sqrt());
+    }
+    scales
+}
+
 fn along(shape: &Shape, shares: &[[[f64; LOBES]; 2]]) -> Vec<Entry> {
     let tilt = f64::from(if shape.tilt.is_finite() { shape.tilt } else { 0.0 });
     let lobes = Along { variances: variances(f64::from(shape.roughness)), tilt, shares };
@@ -265,6 +268,7 @@ fn along(shape: &Shape, shares: &[[[f64; LOBES]; 2]]) -> Vec<Entry> {
     (0..POLES).map(|k| pole(&lobes, &balance, FRAC_PI_2 - angle(k as f64 / (POLES - 1) as f64))).collect()
 }
 
+/// The entry along the fibre of an angle.
 fn pole(lobes: &Along, balance: &Balance, theta: f64) -> Entry {
     let (first, share) =
         between((theta / PI + 0.5 - 0.5 / ANGLES as f64) * ANGLES as f64 / (ANGLES - 1) as f64, ANGLES);
@@ -280,11 +284,11 @@ fn pole(lobes: &Along, balance: &Balance, theta: f64) -> Entry {
     }
     let g = white.iter().sum::<f64>() / (1.0 - lacking).max(1e-6);
     let (mut white, mut left) = (white.map(|x| x / g), left.map(|x| x / g));
-    if balance.all_lacking > 0.0 {
-        white[1] += lacking;
-        left[1] += lacking * even / balance.all_lacking;
-    }
+    // Where nothing is lacking this adds 0.
+    let all_lacking = balance.all_lacking.max(1e-30);
+    white[1] += lacking;
+    left[1] += lacking * even / all_lacking;
     let mut entry = entry(white, left, g * g);
-    entry[0] = if balance.all_lacking > 0.0 { g * lacking / balance.all_lacking.sqrt() } else { 0.0 };
+    entry[0] = g * lacking / all_lacking.sqrt();
     entry
 }
