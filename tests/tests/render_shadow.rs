@@ -7,6 +7,7 @@ use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Random, Screen};
 use tressfx_conformance::run_and_read;
 use tressfx_core::backend::DepthOrder;
+use tressfx_core::id::TextureId;
 use tressfx_core::pass::{Command, PassList};
 use tressfx_core::shape::Ellipsoid;
 use tressfx_core::view::{Pose, View};
@@ -322,6 +323,39 @@ fn hair_behind_a_ball_is_dark() {
         }
         assert!(dark > 300 && lit > 3000, "{dark} dark, {lit} lit");
     }
+}
+
+#[test]
+fn lights_whose_depth_is_in_one_texture_share_a_pass_and_leave_the_same() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let ball = Mesh::ellipsoid(&Ellipsoid { center: Vec3::ZERO, radii: Vec3::splat(0.25) }, 96);
+    let view_from = |towards: Vec3| {
+        let eye = glam::camera::rh::view::look_to_mat4(3.0 * towards, -towards, Vec3::Y);
+        let lens = glam::camera::rh::proj::directx::orthographic(-0.5, 0.5, -0.5, 0.5, 1.0, 6.0);
+        View::new(eye, lens, DepthOrder::Standard, [128; 2]).unwrap()
+    };
+    // A ball looks the same from everywhere: what one light sees of it is what each of them sees.
+    let ways = [Vec3::X, Vec3::new(0.6, 0.0, 0.8), Vec3::Z, Vec3::NEG_X, Vec3::new(0.0, 0.6, 0.8)];
+    let textures = ways.map(|_| screen.depth_from(&view_from(Vec3::X), &[&ball]).0);
+    let groom = Groom::wavy(200, 24, 9, Material::default());
+    let mut found = |depth_of: &dyn Fn(usize) -> TextureId| {
+        let light = |(i, way): (usize, &Vec3)| {
+            let opaque = OpaqueDepth { depth: depth_of(i), view: view_from(*way), bias: 0.01 };
+            Light::directional(*way, Vec3::ONE).opaque(opaque)
+        };
+        screen.lights.lights = ways.iter().enumerate().map(light).collect();
+        let mut list = PassList::new();
+        let section = screen.section(&mut list, &groom);
+        let draws = [SectionDraw::new(&section, &groom.material, groom.pose)];
+        let view = ViewDraw::new(&screen.view, &screen.lights, screen.targets());
+        screen.renderer.draw(&mut list, &[view], &draws).unwrap();
+        let passes = list.labels().filter(|label| *label == "hair.render.shadow_opaque").count();
+        (passes, arriving(&mut screen, &DESC(), &groom).0)
+    };
+    let (apart, two, one) = (found(&|i| textures[i]), found(&|i| textures[i % 2]), found(&|_| textures[0]));
+    assert_eq!([apart.0, two.0, one.0], [5, 2, 1]);
+    assert!(two.1 == apart.1 && one.1 == apart.1);
+    assert!((0..5).all(|light| apart.1.iter().any(|arriving| arriving.lights[light] == 0.0)), "each light is hidden");
 }
 
 #[test]

@@ -6,11 +6,11 @@ use glam::{Quat, Vec3};
 use tressfx_conformance::render::{Groom, Random, Screen};
 use tressfx_conformance::sim::random_strands;
 use tressfx_core::backend::{Backend, DepthOrder, Run};
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Command, Grid, Groups, PassList};
 use tressfx_core::view::{Camera, Pose};
 use tressfx_render::{
-    Light, LightPlace, Lights, PpllDesc, SectionDraw, ShadedStrands, ShadowDesc, StrandInfo, Technique, TilesDesc,
-    ViewDraw,
+    Fill, Light, LightPlace, Lights, PpllDesc, SectionDraw, ShadedStrands, ShadowDesc, ShortCutDesc, StrandInfo,
+    Technique, TilesDesc, ViewDraw,
 };
 use tressfx_sim::{HairSim, SectionDesc, SimParams, Solver, StepInput, Wind};
 
@@ -24,6 +24,68 @@ fn groom(seed: u32, place: Vec3, is_known: bool) -> Groom {
     groom.info.reach = (Vec3::ZERO, if is_known { far } else { f32::INFINITY });
     groom.pose.translation = place;
     groom
+}
+
+/// A tenth as large.
+fn small(seed: u32, place: Vec3, is_known: bool) -> Groom {
+    let mut groom = groom(seed, place, is_known);
+    groom.positions.iter_mut().flat_map(|position| &mut position[..3]).for_each(|x| *x *= 0.1);
+    groom.info.reach.1 *= 0.1;
+    groom
+}
+
+/// Groups of the passes with this label in what a frame of the grooms writes, and bytes that it clears.
+fn resolved_and_cleared(screen: &mut Screen, label: &str, grooms: &[&Groom]) -> (u64, u64) {
+    let mut list = PassList::new();
+    let sections: Vec<_> = grooms.iter().map(|groom| screen.section(&mut list, groom)).collect();
+    let pairs = sections.iter().zip(grooms);
+    let draws: Vec<_> = pairs.map(|(strands, groom)| SectionDraw::new(strands, &groom.material, groom.pose)).collect();
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &draws).unwrap();
+    let of = |command: &Command| match command {
+        Command::Compute(pass) if pass.kernel.label() == label => match pass.groups {
+            Groups::Grid(Grid(groups)) => (groups.map(u64::from).iter().product(), 0),
+            Groups::Indirect { .. } => (0, 0),
+        },
+        Command::Clear { bytes, .. } => (0, *bytes),
+        _ => (0, 0),
+    };
+    list.commands().iter().map(of).fold((0, 0), |sum, (groups, bytes)| (sum.0 + groups, sum.1 + bytes))
+}
+
+#[test]
+fn pixels_that_no_groom_reaches_are_left_out_and_the_picture_is_the_same_to_the_bit() {
+    let lists = PpllDesc::default();
+    let raster = lists.fill(Fill::Raster);
+    let layers = ShortCutDesc::default();
+    let techniques: [(Technique, &str); 5] = [
+        (lists.into(), "hair.render.resolve"),
+        (lists.cap(2).into(), "hair.render.resolve"),
+        (raster.into(), "hair.render.resolve"),
+        (layers.into(), "hair.render.shortcut_resolve"),
+        (layers.ordered(true).into(), "hair.render.shortcut_resolve"),
+    ];
+    for (technique, label) in techniques {
+        // Tiles at the right and at the bottom are cut.
+        let made = || screen(|setup| (setup.technique, setup.size) = (technique, [205, 131]));
+        let (Some(mut all), Some(mut some)) = (made(), made()) else { return };
+        let mut random = Random(7);
+        let mut signed = |reach: f32| reach * (2.0 * random.unit() - 1.0);
+        for seed in 0..12 {
+            let places = [0, 1].map(|_| Vec3::new(signed(1.5), signed(0.9), signed(1.0)));
+            let draw = |screen: &mut Screen, is_known: bool| {
+                screen.hair(&[&small(1, places[0], is_known), &small(seed, places[1], is_known)])
+            };
+            let (expected, found) = (draw(&mut all, false), draw(&mut some, true));
+            assert!(expected.counters.fragments > 0 && found.counters == expected.counters);
+            assert!(found.bytes == expected.bytes, "{technique:?}: grooms at {places:?}");
+        }
+        let [expected, found] = [(&mut all, false), (&mut some, true)]
+            .map(|(screen, is_known)| resolved_and_cleared(screen, label, &[&small(1, Vec3::ZERO, is_known)]));
+        assert_eq!(expected.0, 26 * 17, "a group for each tile");
+        assert!(found.0 < expected.0 / 20, "{technique:?}: {found:?} of {expected:?}");
+        assert!(found.1 < expected.1 / 3, "{technique:?}: {found:?} of {expected:?}");
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@
 //! hair.render.shadow_sum        compute  one thread a row of cells: what is taken up to each                HairRenderer
 //! hair.render.shadow_sky        compute  one thread a cell: what arrives there from everywhere              HairRenderer
 //! hair.render.shadow_light      compute  one thread a strand vertex: what arrives there of sky and lights   HairRenderer
-//! hair.render.shadow_opaque     compute  one thread a strand vertex: what the opaque scene leaves of a light HairRenderer
+//! hair.render.shadow_opaque     compute  one thread a strand vertex: what the opaque scene leaves of lights HairRenderer
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
 //! hair.render.nearest           compute  one thread a strand segment: the K nearest, where lists are bounded Technique::Ppll
@@ -57,6 +57,7 @@ mod ppll;
 mod predict;
 mod reach;
 pub mod reference;
+mod region;
 mod renderer;
 mod resolved;
 mod scattering;

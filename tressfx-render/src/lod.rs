@@ -46,7 +46,7 @@ impl Lod {
         (self.share * all).max(1.0).min(all)
     }
 
-    /// Strands that are counted for shadows: of those more than are drawn, since they are as fine at every distance.
+    /// Strands that are counted for shadows: of those more than are drawn, since the cells of lights are as fine at every distance.
     pub(crate) fn shadow_strands(&self, shape: StrandShape) -> u32 {
         let all = shape.strands();
         ((self.share.sqrt() * all as f32).ceil() as u32).clamp(1, all.max(1))

@@ -27,7 +27,7 @@ use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, 
 use crate::usage::Usage;
 use crate::views::BoundView;
 use bounded::{Bounded, Prepared};
-use pool::NodePool;
+use pool::{HEAD_BYTES, NodePool};
 use resolve::{Resolve, Variant};
 
 #[cfg(test)]
@@ -404,13 +404,13 @@ impl TechniqueInstance for Ppll {
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
-        self.pool.clear_heads(list, view.size);
+        view.region.clear(list, self.pool.heads, HEAD_BYTES);
         self.resolved.clear(list);
         let own = self.pool.bindings(view);
         match self.bounded.passes() {
             None => self.fill.passes(list, view, draws, targets, &own)?,
             Some(passes) => {
-                passes.clear(list, view.size, self.kept);
+                passes.clear(list, &view.region, self.kept);
                 if self.kept > 0 {
                     passes.nearest.passes(list, view, draws, targets, &[own[0], passes.keys])?;
                 }

@@ -15,7 +15,7 @@ use crate::views::ViewDraw;
 const STRETCH: f32 = 1.5;
 
 /// Pixels beyond the picture in which something is drawn that reaches into it.
-const MARGIN: f64 = 4.0;
+pub(crate) const MARGIN: f64 = 4.0;
 
 /// Sky is taken by hair that is nearer than twice the radii of both: beyond that it hides less than 2 % of it. This is the square.
 const SKY_SQUARE: f32 = 4.0;
@@ -57,13 +57,13 @@ pub(crate) fn of(strands: &Strands) -> (Vec3, f32) {
 
 /// What holds a section, in the world. Small, since there may be thousands.
 #[derive(Clone, Copy, Debug)]
-struct Ball {
-    center: Vec3,
-    radius: f32,
+pub(crate) struct Ball {
+    pub(crate) center: Vec3,
+    pub(crate) radius: f32,
 }
 
 impl Ball {
-    fn of(draw: &SectionDraw) -> Self {
+    pub(crate) fn of(draw: &SectionDraw) -> Self {
         let (strands, center) = (draw.strands, draw.pose.translation);
         let fibre = strands.radius(draw.material) * draw.lod.widening(draw.drawn_shape());
         // More than what is lost where the numbers are added.

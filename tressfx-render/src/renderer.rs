@@ -11,7 +11,8 @@ use crate::counters::Counters;
 use crate::draw_error::{DrawError, check_lights, check_section};
 use crate::lights::Lights;
 use crate::output::Output;
-use crate::reach::{self, Drawn};
+use crate::reach::{self, Ball, Drawn};
+use crate::region::Region;
 use crate::shade::Shade;
 use crate::shadow::{ShadowDesc, Shadows};
 use crate::strands::SectionDraw;
@@ -346,13 +347,14 @@ impl HairRenderer {
         if draws.is_empty() || views.iter().all(|draw| draw.view.is_empty()) {
             return Ok(());
         }
-        self.views.upload(list, views);
+        let regions: Vec<_> = views.iter().map(|seen| Region::of(seen.view, draws.iter().map(Ball::of))).collect();
+        self.views.upload(list, views, &regions);
         casting.iter().for_each(|draw| draw.upload(list));
         draws.iter().for_each(|draw| self.shade.upload(list, draw));
         // What arrives does not depend on the eye: views in the same light share it.
         let mut lit = cast.as_ref().map(|(lights, has_any)| (lights, *has_any));
         for (index, seen) in views.iter().enumerate().filter(|(_, seen)| !seen.view.is_empty()) {
-            let view = self.views.bound(index, seen.view);
+            let view = self.views.bound(index, seen.view, regions[index]);
             let is_new = lit.is_none_or(|(lights, _)| lights != seen.lights);
             if let Some(shadows) = self.shadows.as_mut().filter(|_| is_new) {
                 lit = Some((seen.lights, shadows.passes(list, 1 + index, seen.lights, casting)?));

@@ -18,7 +18,7 @@ use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
-use crate::lights::{Lights, STORED_LIGHTS};
+use crate::lights::{Lights, OpaqueDepth, STORED_LIGHTS};
 use crate::shaders::GROUP;
 use crate::strands::SectionDraw;
 use crate::views::MAX_VIEWS;
@@ -26,7 +26,7 @@ use frames::cells_of_all;
 pub use frames::{ShadowFrameUniform, ShadowUniform};
 use kernels::Kernels;
 pub use kernels::SHADOW_MODULES;
-pub use opaque::OpaqueUniform;
+pub use opaque::{OpaqueScenesUniform, OpaqueUniform};
 
 const LABEL: Label = "hair.render.shadow";
 
@@ -50,8 +50,6 @@ pub struct ShadowDesc {
 }
 
 /// Cells that are left however small a groom is seen.
-const LEAST_TEXELS: u32 = 32;
-const LEAST_LAYERS: u32 = 12;
 const LEAST_CELLS: u32 = 8;
 
 impl Default for ShadowDesc {
@@ -92,14 +90,13 @@ impl ShadowDesc {
         Self { skin, ..self }
     }
 
-    /// The cells for what is drawn of these: where fewer strands are, since they are seen from further away, cells are larger. Their number falls in
-    /// steps of the root of two, so that it seldom changes.
+    /// The cells for what is drawn of these: where fewer strands are, since they are seen from further away, the sky's are larger. Their number falls in
+    /// steps of the fourth root of two, so that it seldom changes. Those of lights stay: what shines between locks would be lost, a tenth of the light.
     pub(crate) fn coarser(&self, draws: &[SectionDraw]) -> Self {
         let share = draws.iter().map(|draw| draw.lod.share).fold(f32::MIN_POSITIVE, f32::max);
-        let scale = (-0.5 * (-share.log2()).floor()).exp2();
-        let scaled = |cells: u32, least: u32| ((cells as f32 * scale).round() as u32).max(least.min(cells));
-        let (texels, layers) = (scaled(self.texels, LEAST_TEXELS), scaled(self.layers, LEAST_LAYERS));
-        Self { texels, layers, cells: scaled(self.cells, LEAST_CELLS), ..*self }
+        let scale = (-0.25 * (-share.log2()).floor()).exp2();
+        let cells = (self.cells as f32 * scale).round() as u32;
+        Self { cells: cells.max(LEAST_CELLS.min(self.cells)), ..*self }
     }
 
     fn check(&self) -> Result<()> {
@@ -127,8 +124,8 @@ impl ShadowDesc {
 #[derive(Debug)]
 pub(crate) struct Memory {
     pub(crate) uniforms: UniformArray<ShadowUniform>,
-    /// [`OpaqueUniform`] of each light of each set.
-    scenes: UniformArray<OpaqueUniform>,
+    /// [`OpaqueScenesUniform`] of each texture of each set.
+    scenes: UniformArray<OpaqueScenesUniform>,
     /// Six whole numbers a frame: see `grids.wgsl`.
     pub(crate) bounds: BufferId,
     /// `u32` a cell of all frames.
@@ -221,7 +218,7 @@ impl Shadows {
             kernels.sum(list, set, memory, Grid::for_threads(rows, GROUP))?;
         }
         if uniform.first == 0 {
-            kernels.sky(list, set, memory, Grid::for_threads(desc.cells.pow(3), GROUP))?;
+            kernels.sky(list, set, memory, desc.cells)?;
         }
         for draw in draws {
             kernels.light(list, set, draw, memory)?;
@@ -239,15 +236,18 @@ impl Shadows {
         draws.iter().try_for_each(|draw| kernels.splat(list, set, draw, memory, desc))
     }
 
-    /// The shadows of opaque scenes.
+    /// The shadows of opaque scenes: lights whose depth is in one texture share a pass.
     fn opaque(&mut self, list: &mut PassList, set: usize, lights: &Lights, draws: &[SectionDraw]) -> Result<()> {
         let Self { kernels, memory, .. } = self;
         let casting = lights.lights.iter().take(STORED_LIGHTS).enumerate().filter(|(_, light)| light.casts);
-        for (light, scene) in casting.filter_map(|(index, light)| Some((index, light.opaque?))) {
-            let place = set * STORED_LIGHTS + light;
-            memory.scenes.upload(list, place, &[OpaqueUniform::new(&scene, light)]);
+        let mut left: Vec<_> = casting.filter_map(|(index, light)| Some((index, light.opaque?))).collect();
+        while let Some((place, OpaqueDepth { depth, .. })) = left.first().copied() {
+            let (same, others): (Vec<_>, _) = left.into_iter().partition(|(_, scene)| scene.depth == depth);
+            let place = set * STORED_LIGHTS + place;
+            memory.scenes.upload(list, place, &[OpaqueScenesUniform::new(&same)]);
             let uniform = (place, memory.scenes.binding(place));
-            draws.iter().try_for_each(|draw| kernels.opaque(list, uniform, scene.depth, draw))?;
+            draws.iter().try_for_each(|draw| kernels.opaque(list, uniform, depth, draw))?;
+            left = others;
         }
         Ok(())
     }

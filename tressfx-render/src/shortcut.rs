@@ -179,7 +179,7 @@ impl TechniqueInstance for ShortCut {
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
-        self.memory.clear(list, view.size, &self.desc);
+        self.memory.clear(list, &view.region, &self.desc);
         self.depths.passes(list, view, draws, targets, &self.memory.of_depths(view))?;
         self.colors.passes(list, view, draws, targets, &self.memory.of_colors(&self.desc))?;
         self.resolve.pass(list, view, &self.memory)?;

@@ -10,7 +10,7 @@ use crate::lights::{LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::material::Material;
 use crate::scattering::variances;
-pub use crate::shadow::{OpaqueUniform, ShadowFrameUniform, ShadowUniform};
+pub use crate::shadow::{OpaqueScenesUniform, OpaqueUniform, ShadowFrameUniform, ShadowUniform};
 use crate::strands::StrandInfo;
 pub use crate::velocity::MotionUniform;
 
@@ -77,6 +77,10 @@ gpu_struct! {
         pub light_count: u32,
         /// A bit for each of them that casts shadows.
         pub casting: u32,
+        /// Columns and rows of tiles of 8 x 8 pixels in which no hair is, before the first ones in which some may be.
+        pub first_tile: [u32; 2],
+        /// Nothing.
+        pub unused: [u32; 2],
         /// The lights.
         pub lights: [LightUniform; MAX_LIGHTS],
     }
@@ -221,6 +225,8 @@ impl ViewUniform {
             target_size: view.viewport().target(),
             light_count: lights.lights.len().min(MAX_LIGHTS) as u32,
             casting: lights.casting(),
+            first_tile: [0; 2],
+            unused: [0; 2],
             lights: LightUniform::all(lights),
         }
     }

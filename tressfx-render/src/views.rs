@@ -8,6 +8,7 @@ use tressfx_core::uniform_array::UniformArray;
 use tressfx_core::view::View;
 
 use crate::lights::Lights;
+use crate::region::Region;
 use crate::renderer::Targets;
 use crate::uniforms::ViewUniform;
 
@@ -42,6 +43,8 @@ pub(crate) struct BoundView<'a> {
     pub(crate) uniform: Binding,
     /// Pixels of the viewport.
     pub(crate) size: [u32; 2],
+    /// Where in it hair may be.
+    pub(crate) region: Region,
     pub(crate) view: &'a View,
 }
 
@@ -55,12 +58,16 @@ impl Views {
     }
 
     /// Uploads the views of a frame.
-    pub(crate) fn upload(&self, list: &mut PassList, views: &[ViewDraw]) {
-        let uniforms: Vec<_> = views.iter().map(|draw| ViewUniform::new(draw.view, draw.lights)).collect();
+    pub(crate) fn upload(&self, list: &mut PassList, views: &[ViewDraw], regions: &[Region]) {
+        let uniform = |draw: &ViewDraw, region: &Region| ViewUniform {
+            first_tile: region.first,
+            ..ViewUniform::new(draw.view, draw.lights)
+        };
+        let uniforms: Vec<_> = views.iter().zip(regions).map(|(draw, region)| uniform(draw, region)).collect();
         self.0.upload(list, 0, &uniforms);
     }
 
-    pub(crate) fn bound<'a>(&self, index: usize, view: &'a View) -> BoundView<'a> {
-        BoundView { index, uniform: self.0.binding(index), size: view.size(), view }
+    pub(crate) fn bound<'a>(&self, index: usize, view: &'a View, region: Region) -> BoundView<'a> {
+        BoundView { index, uniform: self.0.binding(index), size: view.size(), region, view }
     }
 }

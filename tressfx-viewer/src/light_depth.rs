@@ -6,11 +6,11 @@ use tressfx_asset::mesh::Mesh;
 use tressfx_core::backend::{Backend, Depth, DepthOrder, Format, RasterDesc, TextureDesc};
 use tressfx_core::error::{Label, Result};
 use tressfx_core::id::TextureId;
-use tressfx_core::pass::{Load, PassList, RasterPass};
+use tressfx_core::pass::{self, Load, PassList, RasterPass};
 use tressfx_core::shader::{RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::strands::Bounds;
 use tressfx_core::uniform_array::UniformArray;
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Pose, View, Viewport};
 use tressfx_render::uniforms::ViewUniform;
 use tressfx_render::{Light, LightPlace, Lights, OpaqueDepth, STORED_LIGHTS, VIEW_MODULE};
 
@@ -27,18 +27,19 @@ const BIAS: f32 = 2.0;
 /// A light at a point sees the meshes from this many times their radius on.
 const NEAREST: f32 = 1.1;
 
-/// The depth of the scene as each light sees it; a light among the meshes sees none.
+/// The depth of the scene as each light sees it, side by side in one texture; a light among the meshes sees none.
 #[derive(Debug)]
 pub struct LightDepth {
     pipeline: RasterPipeline,
     views: UniformArray<ViewUniform>,
-    textures: Vec<TextureId>,
+    /// Lights that it has room for, and what they see; none where there are no meshes.
+    seen: Option<(u32, TextureId)>,
     /// Around all meshes, with the head in its rest pose.
     sphere: (Vec3, f32),
 }
 
 impl LightDepth {
-    /// Compiles the shader, and makes a texture for each light that casts a shadow.
+    /// Compiles the shader, and makes a texture for the lights that cast a shadow.
     ///
     /// # Errors
     /// What the backend says.
@@ -47,14 +48,15 @@ impl LightDepth {
         let source = ShaderSource { label: LABEL, root, library: &[VIEW_MODULE] };
         let shader = Shader::new(&source, &Specialization::new())?.into();
         let depth = Depth::TestWrite(DepthOrder::Standard);
-        let desc = TextureDesc::new(LABEL, [TEXELS; 2], Format::Depth32F);
         let casting = lights.lights.iter().take(STORED_LIGHTS).filter(|light| light.casts);
-        let textures = if meshes.is_empty() { 0 } else { casting.count() };
+        let room = if meshes.is_empty() { 0 } else { casting.count() as u32 };
+        let desc = TextureDesc::new(LABEL, [TEXELS * room, TEXELS], Format::Depth32F);
+        let texture = (room > 0).then(|| backend.create_texture(&desc)).transpose()?;
         let bounds = Bounds::of(meshes.iter().flat_map(|mesh| &mesh.positions).copied());
         Ok(Self {
             pipeline: backend.create_raster(&RasterDesc::new(shader).depth(depth))?,
             views: UniformArray::new(backend, LABEL, STORED_LIGHTS)?,
-            textures: (0..textures).map(|_| backend.create_texture(&desc)).collect::<Result<_>>()?,
+            seen: texture.map(|texture| (room, texture)),
             sphere: (bounds.center(), 0.5 * (bounds.max - bounds.min).length()),
         })
     }
@@ -66,11 +68,18 @@ impl LightDepth {
     pub fn draw(&self, list: &mut PassList, lights: &Lights, meshes: &[MeshDraw], head: Pose) -> Result<Lights> {
         let mut lit = lights.clone();
         meshes.iter().for_each(|mesh| mesh.upload(list));
+        let Some((room, depth)) = self.seen else { return Ok(lit) };
+        let target = [TEXELS * room, TEXELS];
+        let mut load = Load::Clear(DepthOrder::Standard.far());
         let casting = lit.lights.iter_mut().take(STORED_LIGHTS).filter(|light| light.casts);
-        for (index, (light, &depth)) in casting.zip(&self.textures).enumerate() {
-            let Some(view) = self.view(light, head) else { continue };
+        for (index, light) in casting.take(room as usize).enumerate() {
+            let origin = [TEXELS * index as u32, 0];
+            let part = Viewport::part(origin, [TEXELS; 2], target).expect("each light has its part");
+            let Some(view) = self.view(light, head, part) else { continue };
             self.views.upload(list, index, &[ViewUniform::new(&view, &Lights::default())]);
-            let mut pass = RasterPass::new(LABEL).depth(depth, Load::Clear(DepthOrder::Standard.far()));
+            let mut pass =
+                RasterPass::new(LABEL).depth(depth, load).viewport(pass::Viewport { origin, size: [TEXELS; 2] });
+            load = Load::Keep;
             for MeshDraw { mesh, .. } in meshes {
                 let bindings = self.pipeline.bind(&mesh.bindings(self.views.binding(index)))?;
                 pass = pass.draw(mesh.draw(&self.pipeline, &bindings));
@@ -82,8 +91,8 @@ impl LightDepth {
         Ok(lit)
     }
 
-    /// From a light, around the meshes.
-    fn view(&self, light: &Light, head: Pose) -> Option<View> {
+    /// From a light, around the meshes, into a part of the texture.
+    fn view(&self, light: &Light, head: Pose, part: Viewport) -> Option<View> {
         let (middle, radius) = (head.transform(self.sphere.0), self.sphere.1);
         let (eye, lens) = match light.place {
             LightPlace::Directional { towards } => {
@@ -103,7 +112,7 @@ impl LightDepth {
         };
         let way = (middle - eye).try_normalize()?;
         let up = if way.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
-        View::new(rh::view::look_to_mat4(eye, way, up), lens, DepthOrder::Standard, [TEXELS; 2]).ok()
+        View::new(rh::view::look_to_mat4(eye, way, up), lens, DepthOrder::Standard, part).ok()
     }
 }
 

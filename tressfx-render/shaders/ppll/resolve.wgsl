@@ -8,9 +8,10 @@
 import package::constants::K;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::node::{NOTHING, PoolUniform};
-import package::pixels::{count_hairy, counters, index_of, is_inside};
+import package::pixels::{count_hairy, counters, index_of, is_inside, pixel_of, view};
 import package::rest::{SUMS, UNIT};
 import package::sums::{FULL, optical_depth, transmittance_of};
+import package::tile::tile_of;
 
 @if(hair_output)
 import package::fragment::{nearness_of, seen_key};
@@ -86,6 +87,20 @@ fn rest_of(index: u32) -> Tail {
     return tail;
 }
 
+// Puts a node at its place among the nearest, which is before the last one. Those behind it move up; returns the one that falls out.
+fn insert(nearest: ptr<function, array<vec3<u32>, ROOM>>, node: vec3<u32>) -> vec3<u32> {
+    let last = (*nearest)[ROOM - 1u];
+    var is_here = true;
+    for (var i = ROOM - 1u; i > 0u; i--) {
+        let before = (*nearest)[i - 1u];
+        let is_further = is_before(node, before);
+        (*nearest)[i] = select(select((*nearest)[i], node, is_here), before, is_further);
+        is_here = is_further;
+    }
+    (*nearest)[0] = select((*nearest)[0], node, is_here);
+    return last;
+}
+
 fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     var nearest: array<vec3<u32>, ROOM>;
     for (var i = 0u; i < ROOM; i++) {
@@ -93,19 +108,15 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     }
     var tail: Tail;
     @if(shaded || unshaded) { tail = behind; }
-    var next = head;
-    while next != NOTHING {
-        let node = nodes[next - 1u];
-        next = node.w;
+    // The next node is fetched before this one is looked at: the time is that of waiting for memory.
+    var node = nodes[max(head, 1u) - 1u];
+    var rest_of_list = head;
+    while rest_of_list != NOTHING {
+        rest_of_list = node.w;
         var passed = node.xyz;
+        node = nodes[max(rest_of_list, 1u) - 1u];
         if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
-            // The last one falls out, and those behind the new one move up.
-            for (var i = 0u; i < K; i++) {
-                let held = nearest[i];
-                let first = is_before(passed, held);
-                nearest[i] = select(held, passed, first);
-                passed = select(passed, held, first);
-            }
+            passed = insert(&nearest, passed);
         }
         @if(shaded || unshaded) { add(&tail, passed); }
     }
@@ -142,10 +153,11 @@ fn count_fragments() {
 }
 
 @compute @workgroup_size(8, 8)
-fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
-           @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let inside = is_inside(pixel.xy);
-    let index = index_of(pixel.xy);
+fn resolve(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
+           @builtin(local_invocation_index) lane: u32) {
+    let pixel = pixel_of(thread.xy);
+    let inside = is_inside(pixel);
+    let index = index_of(pixel);
     var head = NOTHING;
     var behind: Tail;
     if inside {
@@ -153,7 +165,7 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
         behind = rest_of(index);
     }
     let has_hair = head != NOTHING || behind.weight > 0u;
-    let count = count_hairy(has_hair, group.y * groups.x + group.x, lane);
+    let count = count_hairy(has_hair, tile_of(pixel, view.size), lane);
     if lane == 0u && all(group.xy == vec2(0u)) {
         count_fragments();
     }
@@ -162,7 +174,7 @@ fn resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_i
         if has_hair {
             color = resolve_list(head, behind);
         }
-        @if(!hair_output) { write_pixel(pixel.xy, color); }
-        @if(hair_output) { write_seen_pixel(pixel.xy, color, nearest_seen(index, head)); }
+        @if(!hair_output) { write_pixel(pixel, color); }
+        @if(hair_output) { write_seen_pixel(pixel, color, nearest_seen(index, head)); }
     }
 }

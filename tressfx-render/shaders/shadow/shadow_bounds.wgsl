@@ -12,11 +12,16 @@ import package::section::{SectionUniform, moved_aside, source_of, stepped};
 
 // Vertices of a thread: fewer threads wait longer for their bytes, and more of them take turns at the box.
 const PIECE: u32 = 8u;
+// Six of the box in each of nine frames.
+const SIDES: u32 = 54u;
+
+// The boxes of the strands of the group: the largest of x, y, z and of -x, -y, -z, as whole numbers in their order.
+var<workgroup> boxes: array<atomic<u32>, SIDES>;
 
 fn note(at: u32, value: f32) {
-    // Most strands change nothing, and need no turn.
-    if order_of(value) > atomicLoad(&bounds[at]) {
-        atomicMax(&bounds[at], order_of(value));
+    // Most change nothing, and need no turn.
+    if order_of(value) > atomicLoad(&boxes[at]) {
+        atomicMax(&boxes[at], order_of(value));
     }
 }
 
@@ -27,17 +32,8 @@ fn note_box(frame: u32, low: vec3<f32>, high: vec3<f32>) {
     }
 }
 
-@compute @workgroup_size(GROUP)
-fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
-                 @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    let samples = min(section.shadow_strands, shadow.samples);
-    let strand = i % samples;
-    let first = i / samples * PIECE;
-    let end = min(first + PIECE, section.lod.vertices);
-    if first >= end {
-        return;
-    }
+// The boxes of some vertices of a strand.
+fn note_piece(strand: u32, first: u32, end: u32) {
     let source = source_of(section.strands, strand);
     let aside = moved_aside(section.strands, section.copy_spread, strand);
     for (var frame = shadow.first; frame < shadow.end; frame++) {
@@ -53,6 +49,27 @@ fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroup
         }
         if low.x <= high.x {
             note_box(frame, low, high);
+        }
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn shadow_bounds(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
+                 @builtin(local_invocation_index) lane: u32) {
+    if lane < SIDES {
+        atomicStore(&boxes[lane], 0u);
+    }
+    workgroupBarrier();
+    let i = thread_index(group, groups, lane);
+    let samples = min(section.shadow_strands, shadow.samples);
+    let first = i / samples * PIECE;
+    note_piece(i % samples, first, min(first + PIECE, section.lod.vertices));
+    workgroupBarrier();
+    // One turn of a group at each side, where each strand would take one.
+    if lane < SIDES {
+        let order = atomicLoad(&boxes[lane]);
+        if order > atomicLoad(&bounds[lane]) {
+            atomicMax(&bounds[lane], order);
         }
     }
 }

@@ -1,5 +1,5 @@
 // How much light fibres take in each cell: the area that they cover as the light sees it, by their `shadow_alpha`. One thread a segment, of
-// an even sample of the strands. Sums are of integers, the same in any order.
+// an even sample of the strands; those of a strand share the work on the skin behind its root. Sums are of integers, the same in any order.
 
 import package::frames::{SKY, ShadowGrid, ShadowFrameUniform, cell_at, in_frame, place_in, shrinks_by};
 import package::grid::{GROUP, thread_index};
@@ -59,22 +59,45 @@ fn spread(grid: ShadowGrid, piece: Piece, length: f32, salt: u32) {
     }
 }
 
-// A ball of skin behind a root, large enough that those of neighbouring roots touch.
-fn add_skin(grid: ShadowGrid, frame: ShadowFrameUniform, root: vec3<f32>, growth: vec3<f32>, roots: f32) {
-    let at = in_frame(frame, root);
+// A root in the world, which way its strand grows there, and how many roots share the skin.
+struct Root {
+    at: vec3<f32>,
+    growth: vec3<f32>,
+    roots: f32,
+}
+
+// No roots share the skin where there is none behind this strand: only guides stand for it.
+fn root_of(strand: u32, source: u32, aside: vec3<f32>) -> Root {
+    if strand >= section.guides {
+        return Root();
+    }
+    let samples = min(section.shadow_strands, shadow.samples);
+    let start = posed(source, 0u, aside);
+    let next = posed(source, stepped(section.lod, 1u, section.vertices), aside);
+    let growth = next.xyz - start.xyz;
+    let unit = growth * inverseSqrt(max(dot(growth, growth), 1e-30));
+    return Root(start.xyz, unit, select(0.0, f32(min(section.guides, samples)), start.w * next.w > 0.0));
+}
+
+// Cells of a ball of skin behind a root, large enough that those of neighbouring roots touch: every `threads`th of the box around it.
+fn add_skin(grid: ShadowGrid, frame: ShadowFrameUniform, root: Root, thread: u32, threads: u32) {
+    let at = in_frame(frame, root.at);
     let unit = vec3(vec2(shrinks_by(frame, at)), 1.0) * grid.cell;
     let extent = vec3<f32>(grid.size) * unit;
-    let spacing = sqrt(2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / roots);
+    let spacing = sqrt(2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x) / root.roots);
     let radius = clamp(spacing, unit.x, MAX_SKIN * unit.x);
-    let middle = place_in(grid, in_frame(frame, root - growth * (radius + max(unit.x, unit.z))));
-    let reach = vec3<i32>(ceil(radius / unit));
-    for (var z = -reach.z; z <= reach.z; z++) {
-        for (var y = -reach.y; y <= reach.y; y++) {
-            for (var x = -reach.x; x <= reach.x; x++) {
-                let off = vec3<f32>(vec3(x, y, z)) * unit;
-                if dot(off, off) <= radius * radius {
-                    atomicOr(&cells[cell_at(grid, vec3<i32>(floor(middle)) + vec3(x, y, z))], SKIN);
-                }
+    let middle = vec3<i32>(floor(place_in(grid, in_frame(frame, root.at - root.growth * (radius + max(unit.x, unit.z))))));
+    let reach = vec3<u32>(ceil(radius / unit));
+    let size = 2u * reach + 1u;
+    for (var cell = thread; cell < size.x * size.y * size.z; cell += threads) {
+        let place = vec3(cell % size.x, cell / size.x % size.y, cell / (size.x * size.y));
+        let step = vec3<i32>(place) - vec3<i32>(reach);
+        let off = vec3<f32>(step) * unit;
+        if dot(off, off) <= radius * radius {
+            let at = cell_at(grid, middle + step);
+            // Balls overlap: most change nothing, and need no turn.
+            if (atomicLoad(&cells[at]) & SKIN) == 0u {
+                atomicOr(&cells[at], SKIN);
             }
         }
     }
@@ -89,29 +112,27 @@ fn shadow_splat(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups
         return;
     }
     let strand = i % samples;
-    let vertex = stepped(section.lod, i / samples, section.vertices);
-    let next = stepped(section.lod, i / samples + 1u, section.vertices);
+    let segment = i / samples;
     let source = source_of(section.strands, strand);
     let aside = moved_aside(section.strands, section.copy_spread, strand);
-    let start = posed(source, vertex, aside);
-    let end = posed(source, next, aside);
-    if start.w * end.w == 0.0 {
-        return;
-    }
-    let width = 0.5 * (width_at(strand, vertex) + width_at(strand, next));
+    let vertices = vec2(stepped(section.lod, segment, section.vertices), stepped(section.lod, segment + 1u, section.vertices));
+    let start = posed(source, vertices.x, aside);
+    let end = posed(source, vertices.y, aside);
+    let width = 0.5 * (width_at(strand, vertices.x) + width_at(strand, vertices.y));
     let taken = section.shadow_alpha * width * strands_of(section.lod) / f32(samples);
+    let root = root_of(strand, source, aside);
     for (var index = shadow.first; index < shadow.end; index++) {
         let frame = shadow.frames[index];
         let grid = grid_of(index);
-        let ends = array(in_frame(frame, start.xyz), in_frame(frame, end.xyz));
-        let piece = Piece(ends[0], ends[1], taken / shrinks_by(frame, 0.5 * (ends[0] + ends[1])));
-        let seen = length(ends[1].xy - ends[0].xy);
-        let covered = select(seen, MEAN_SINE * distance(ends[0], ends[1]), frame.kind == SKY);
-        spread(grid, piece, covered, (index * section.vertices + vertex) * 65536u + strand * 3u);
-        if vertex == 0u && strand < section.guides && frame.has_skin != 0u {
-            let growth = end.xyz - start.xyz;
-            let unit = growth * inverseSqrt(max(dot(growth, growth), 1e-30));
-            add_skin(grid, frame, start.xyz, unit, f32(min(section.guides, samples)));
+        if start.w * end.w > 0.0 {
+            let ends = array(in_frame(frame, start.xyz), in_frame(frame, end.xyz));
+            let piece = Piece(ends[0], ends[1], taken / shrinks_by(frame, 0.5 * (ends[0] + ends[1])));
+            let seen = length(ends[1].xy - ends[0].xy);
+            let covered = select(seen, MEAN_SINE * distance(ends[0], ends[1]), frame.kind == SKY);
+            spread(grid, piece, covered, (index * section.vertices + vertices.x) * 65536u + strand * 3u);
+        }
+        if root.roots > 0.0 && frame.has_skin != 0u {
+            add_skin(grid, frame, root, segment, section.lod.vertices - 1u);
         }
     }
 }

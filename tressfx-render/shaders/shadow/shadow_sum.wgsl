@@ -9,6 +9,8 @@ import package::grid::{GROUP, thread_index};
 const SKIN: u32 = 0x80000000u;
 // What skin takes: an optical depth of 16.
 const SKIN_DEPTH: u32 = 65536u;
+// Cells that are read before any of them is written: none waits for another.
+const AHEAD: u32 = 8u;
 
 fn add(a: u32, b: u32) -> u32 {
     let sum = a + b;
@@ -27,12 +29,17 @@ fn shadow_sum(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     }
     let first = shadow.frames[index].first + i % row;
     var sum = 0u;
-    for (var layer = 0u; layer < size.z; layer++) {
-        let cell = cells[first + layer * row];
-        sum = add(sum, cell & ~SKIN);
-        if (cell & SKIN) != 0u {
-            sum = add(sum, SKIN_DEPTH);
+    for (var start = 0u; start < size.z; start += AHEAD) {
+        var taken: array<u32, AHEAD>;
+        for (var i = 0u; i < AHEAD; i++) {
+            taken[i] = cells[first + min(start + i, size.z - 1u) * row];
         }
-        cells[first + layer * row] = sum;
+        for (var i = 0u; i < min(AHEAD, size.z - start); i++) {
+            sum = add(sum, taken[i] & ~SKIN);
+            if (taken[i] & SKIN) != 0u {
+                sum = add(sum, SKIN_DEPTH);
+            }
+            cells[first + (start + i) * row] = sum;
+        }
     }
 }

@@ -2,7 +2,7 @@
 // the composite, and writes their colours.
 
 import package::counters::Counters;
-import package::tile::{resolved_index, tile_of};
+import package::tile::{TILE, resolved_index, tile_of};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -19,6 +19,11 @@ import package::view::ViewUniform;
 @group(0) @binding(7) var<storage, read_write> tile_vertices: array<atomic<u32>, 4>;
 
 var<workgroup> hairy: atomic<u32>;
+
+// The pixel of a thread: there is one group a tile, of those in which hair may be.
+fn pixel_of(thread: vec2<u32>) -> vec2<u32> {
+    return TILE * view.first_tile + thread;
+}
 
 fn is_inside(pixel: vec2<u32>) -> bool {
     return all(pixel < view.size);

@@ -47,6 +47,9 @@ struct ViewUniform {
     light_count: u32,
     // A bit for each light that casts shadows.
     casting: u32,
+    // Columns and rows of tiles in which no hair is, before the first ones in which some may be.
+    first_tile: vec2<u32>,
+    unused: vec2<u32>,
     lights: array<LightUniform, 16>,
 }
 

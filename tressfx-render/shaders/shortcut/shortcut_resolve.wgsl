@@ -1,8 +1,9 @@
 // Last pass of ShortCut, one thread a pixel: the colour of its nearest fragments with the opacity of all.
 
 import package::constants::K;
-import package::pixels::{count_hairy, counters, index_of, is_inside};
+import package::pixels::{count_hairy, counters, index_of, is_inside, pixel_of, view};
 import package::sums::{FULL, transmittance_of};
+import package::tile::tile_of;
 
 @if(ordered)
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
@@ -13,11 +14,11 @@ import package::pixels::write_pixel;
 @if(!ordered)
 import package::layers::UNIT;
 @if(!ordered)
-import package::pixels::{resolved, view};
+import package::pixels::resolved;
 @if(!ordered)
 import package::sums::mean_color;
 @if(!ordered)
-import package::tile::{resolved_index, tile_of};
+import package::tile::resolved_index;
 
 @group(0) @binding(1) var<storage, read> layers: array<u32>;
 @group(0) @binding(2) var<storage, read> opticals: array<u32>;
@@ -70,15 +71,16 @@ fn front(pixel: vec2<u32>, index: u32, behind: f32) -> vec4<f32> {
 }
 
 @compute @workgroup_size(8, 8)
-fn shortcut_resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
-                    @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let inside = is_inside(pixel.xy);
-    let index = index_of(pixel.xy);
+fn shortcut_resolve(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>,
+                    @builtin(local_invocation_index) lane: u32) {
+    let pixel = pixel_of(thread.xy);
+    let inside = is_inside(pixel);
+    let index = index_of(pixel);
     var has_hair = false;
     if inside {
         has_hair = layers[index * K] != 0u;
     }
-    let count = count_hairy(has_hair, group.y * groups.x + group.x, lane);
+    let count = count_hairy(has_hair, tile_of(pixel, view.size), lane);
     if lane == 0u && all(group.xy == vec2(0u)) {
         let wanted = atomicLoad(&counters.fragments);
         counters.saturated = u32(wanted > FULL);
@@ -86,10 +88,10 @@ fn shortcut_resolve(@builtin(global_invocation_id) pixel: vec3<u32>, @builtin(wo
     if inside && count > 0u {
         var color = vec4(0.0);
         if has_hair {
-            color = front(pixel.xy, index, transmittance_of(min(opticals[index], FULL)));
+            color = front(pixel, index, transmittance_of(min(opticals[index], FULL)));
         }
-        @if(!hair_output) { write_pixel(pixel.xy, color); }
+        @if(!hair_output) { write_pixel(pixel, color); }
         // The first layer is that of the nearest.
-        @if(hair_output) { write_seen_pixel(pixel.xy, color, layers[index * K]); }
+        @if(hair_output) { write_seen_pixel(pixel, color, layers[index * K]); }
     }
 }

@@ -12,6 +12,7 @@ use tressfx_core::shader::Binding;
 
 use super::{fill, nearest};
 use crate::output::Output;
+use crate::region::Region;
 use crate::resolved::{pixels, storage};
 use crate::segments::{Fill, Segments};
 
@@ -177,11 +178,11 @@ pub(crate) struct Passes<'a> {
 
 impl Passes<'_> {
     /// Empties the memory for a view.
-    pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], kept: u32) {
+    pub(crate) fn clear(&self, list: &mut PassList, region: &Region, kept: u32) {
         let [keys, rest] = self.buffers;
-        list.clear(rest, 0, self.rest_bytes * pixels(size));
+        region.clear(list, rest, self.rest_bytes);
         if kept > 0 {
-            list.clear(keys, 0, 4 * u64::from(kept) * pixels(size));
+            region.clear(list, keys, 4 * u64::from(kept));
         }
     }
 }

@@ -17,6 +17,9 @@ use crate::views::BoundView;
 /// Bytes of a fragment: depth key, colour and alpha, next.
 pub(crate) const NODE_BYTES: u64 = 16;
 
+/// Bytes of the number of the first node of a pixel.
+pub(crate) const HEAD_BYTES: u64 = 4;
+
 gpu_struct! {
     /// Limits of the pool.
     pub(crate) struct PoolUniform {
@@ -77,7 +80,7 @@ impl NodePool {
         let count_limit = desc.count_limit.clamp(1, PpllDesc::COUNT_LIMIT);
         let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
-        let heads = storage(backend, "hair.render.heads", 4 * pixels)?;
+        let heads = storage(backend, "hair.render.heads", HEAD_BYTES * pixels)?;
         let counters = ViewCounters::new(backend, 0)?;
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
@@ -142,15 +145,10 @@ impl NodePool {
         ]
     }
 
-    /// Empties the lists of a view.
-    pub(crate) fn clear_heads(&self, list: &mut PassList, size: [u32; 2]) {
-        list.clear(self.heads, 0, 4 * pixels(size));
-    }
-
     /// What it takes for `size` pixels.
     pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
         let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
-        (4 * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::bytes(0)
+        (HEAD_BYTES * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::bytes(0)
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {

@@ -5,14 +5,14 @@ use std::ops::RangeInclusive;
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
-use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::pass::PassList;
 use tressfx_core::shader::{Binding, Kernel, Specialization};
 
 use super::pool::NodePool;
 use super::{LIBRARY, Tail};
 use crate::bound::Bound;
 use crate::output::Output;
-use crate::resolved::{Resolved, TILE};
+use crate::resolved::Resolved;
 use crate::shaders::compute;
 use crate::views::BoundView;
 
@@ -96,7 +96,7 @@ impl Resolve {
             ];
             kernel.bind(&own.into_iter().chain(rest).collect::<Vec<_>>())
         })?;
-        list.compute(kernel, &bindings, Grid::for_image(view.size, TILE));
+        list.compute(kernel, &bindings, view.region.grid());
         Ok(())
     }
 }

@@ -9,8 +9,8 @@ use crate::shortcut::{ShortCut, ShortCutDesc};
 use crate::technique::Wanted;
 use crate::tiles::{Tiles, TilesDesc, TilesUniform};
 use crate::uniforms::{
-    LensUniform, LightUniform, MotionUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform, ShadowUniform,
-    ViewUniform,
+    LensUniform, LightUniform, MotionUniform, OpaqueScenesUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform,
+    ShadowUniform, ViewUniform,
 };
 
 fn shortcut(backend: &mut NullBackend, k: u32, ordered: bool) -> ShortCut {
@@ -51,6 +51,7 @@ fn structs_are_laid_out_as_in_the_wgsl() {
         shader.check_layout::<ShadowFrameUniform>().unwrap();
     }
     opaque.check_layout::<OpaqueUniform>().unwrap();
+    opaque.check_layout::<OpaqueScenesUniform>().unwrap();
     let velocity = Velocity::new(&mut backend, [64, 64], true).unwrap();
     for shader in velocity.shaders() {
         shader.check_layout::<ViewUniform>().unwrap();

@@ -59,6 +59,8 @@ pub(super) struct Kernels {
 
 /// Vertices of a strand that a thread of `shadow_bounds` looks at.
 const PIECE: u32 = 8;
+/// Threads of `shadow_sky` for a cell.
+const LANES_OF_A_CELL: u32 = 32;
 
 /// Strands of a section that are counted.
 fn samples(draw: &SectionDraw, desc: &ShadowDesc) -> u32 {
@@ -145,9 +147,10 @@ impl Kernels {
     }
 
     /// What arrives in each cell from everywhere.
-    pub(super) fn sky(&mut self, list: &mut PassList, set: usize, memory: &Memory, grid: Grid) -> Result<()> {
+    pub(super) fn sky(&mut self, list: &mut PassList, set: usize, memory: &Memory, cells: u32) -> Result<()> {
         let resources =
             [("shadow", memory.uniforms.binding(set)), ("cells", memory.cells.into()), ("sky", memory.sky.into())];
+        let grid = Grid::for_threads(LANES_OF_A_CELL * cells.pow(3), GROUP);
         self.sky.record(list, (set, None, None), grid, &resources)
     }
 
@@ -164,23 +167,23 @@ impl Kernels {
         self.light.record(list, (set, Some(strands.arriving), None), grid, &resources)
     }
 
-    /// What the opaque scene leaves of a light at each vertex of a section; `scene` is an [`OpaqueUniform`](super::OpaqueUniform).
+    /// What the opaque scene leaves of some lights at each vertex of a section; `scenes` is an [`OpaqueScenesUniform`](super::OpaqueScenesUniform).
     pub(super) fn opaque(
         &mut self,
         list: &mut PassList,
-        scene: (usize, Binding),
+        scenes: (usize, Binding),
         depth: TextureId,
         draw: &SectionDraw,
     ) -> Result<()> {
         let strands = draw.strands;
         let resources = [
-            ("opaque_scene", scene.1),
+            ("opaque_scenes", scenes.1),
             ("depth", depth.into()),
             ("section", strands.uniform.into()),
             ("positions", strands.buffers.positions.into()),
             ("arriving", strands.arriving.into()),
         ];
         let grid = Grid::for_threads(draw.shaded_vertices(), GROUP);
-        self.opaque.record(list, (scene.0, Some(strands.arriving), Some(depth)), grid, &resources)
+        self.opaque.record(list, (scenes.0, Some(strands.arriving), Some(depth)), grid, &resources)
     }
 }

@@ -2,7 +2,7 @@
 
 use tressfx_core::gpu_struct;
 
-use crate::lights::OpaqueDepth;
+use crate::lights::{OpaqueDepth, STORED_LIGHTS};
 use crate::uniforms::LensUniform;
 
 gpu_struct! {
@@ -20,6 +20,33 @@ gpu_struct! {
         pub light: u32,
         /// Nothing.
         pub unused: [u32; 2],
+    }
+}
+
+gpu_struct! {
+    /// What lights see of the opaque scene, in one texture.
+    pub struct OpaqueScenesUniform {
+        /// What each of them sees.
+        pub scenes: [OpaqueUniform; STORED_LIGHTS],
+        /// How many of `scenes` there are.
+        pub count: u32,
+        /// Nothing.
+        pub unused_0: u32,
+        /// Nothing.
+        pub unused_1: u32,
+        /// Nothing.
+        pub unused_2: u32,
+    }
+}
+
+impl OpaqueScenesUniform {
+    /// What the shader is given for these lights, each with its number.
+    pub fn new(lights: &[(usize, OpaqueDepth)]) -> Self {
+        let mut made = Self { count: lights.len() as u32, ..bytemuck::Zeroable::zeroed() };
+        for (scene, (light, depth)) in made.scenes.iter_mut().zip(lights) {
+            *scene = OpaqueUniform::new(depth, *light);
+        }
+        made
     }
 }
 

@@ -9,7 +9,8 @@ use tressfx_core::shader::Binding;
 use super::ShortCutDesc;
 use crate::counters::ViewCounters;
 use crate::output::Output;
-use crate::resolved::{Resolved, pixels, storage, tile_count};
+use crate::region::Region;
+use crate::resolved::{Resolved, pixels, storage};
 use crate::views::BoundView;
 
 /// The buffers of ShortCut.
@@ -77,14 +78,14 @@ impl Memory {
     }
 
     /// Empties the pixels of a view.
-    pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2], desc: &ShortCutDesc) {
-        let [layers, opticals, fronts] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
+    pub(crate) fn clear(&self, list: &mut PassList, region: &Region, desc: &ShortCutDesc) {
+        let [layers, opticals, fronts] = bytes_of_pixel(desc);
         self.resolved.clear(list);
-        list.clear(self.layers, 0, layers);
-        list.clear(self.opticals, 0, opticals);
-        list.clear(self.fronts, 0, fronts);
+        region.clear(list, self.layers, layers);
+        region.clear(list, self.opticals, opticals);
+        region.clear(list, self.fronts, fronts);
         if !desc.ordered {
-            list.clear(self.resolved.colors, 0, self.resolved.output.slot_bytes() * u64::from(tile_count(size)));
+            region.clear_tiles(list, self.resolved.colors, self.resolved.output.slot_bytes());
         }
     }
 

@@ -2,14 +2,13 @@
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
-use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::pass::PassList;
 use tressfx_core::shader::{Kernel, Module};
 
 use super::ShortCutDesc;
 use super::memory::Memory;
 use crate::bound::Bound;
 use crate::output::Output;
-use crate::resolved::TILE;
 use crate::shaders::{PIXELS, compute, with_shared};
 use crate::views::BoundView;
 
@@ -43,7 +42,7 @@ impl Resolve {
                 ("tile_vertices", memory.resolved.draw.into()),
             ])
         })?;
-        list.compute(&self.kernel, &bindings, Grid::for_image(view.size, TILE));
+        list.compute(&self.kernel, &bindings, view.region.grid());
         Ok(())
     }
 }
