@@ -45,7 +45,7 @@ pub struct AutoDesc {
     /// The tiles.
     pub tiles: TilesDesc,
     /// Fragments a pixel with hair, in the mean of a view, from which on hair is drawn in tiles. They also draw it where there are more
-    /// fragments than lists may hold.
+    /// fragments than lists hold unbounded.
     pub dense: f32,
     /// Whether tiles may take over on a device that computes on the CPU too.
     pub tiles_on_cpu: bool,
@@ -172,7 +172,7 @@ impl Auto {
         // Tiles do not make what nobody sees: then it is known from the prediction alone how many fragments there are.
         let fragments = if self.uses_tiles { self.predicted.fragments * self.seen } else { counters.fragments.into() };
         let depth = fragments / f64::from(counters.pixels_with_hair.max(1));
-        let part = (depth / f64::from(self.desc.dense)).max(fragments / f64::from(self.lists.largest()));
+        let part = (depth / f64::from(self.desc.dense)).max(fragments / self.lists.most_unbounded());
         if self.uses_tiles { part < BACK } else { part > 1.0 }
     }
 

@@ -228,7 +228,7 @@ impl Ppll {
 
     /// Holds all fragments again where they have room. Returns whether it does.
     fn unbound(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<bool> {
-        let has_room = fragments as f64 * SPARE <= f64::from(self.pool.largest);
+        let has_room = fragments as f64 <= self.most_unbounded();
         if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
             return Ok(false);
         }
@@ -259,9 +259,9 @@ impl Ppll {
         Ok(())
     }
 
-    /// Fragments that there may be room for.
-    pub(crate) fn largest(&self) -> u32 {
-        self.pool.largest
+    /// Fragments up to which lists hold all again where they were bounded.
+    pub(crate) fn most_unbounded(&self) -> f64 {
+        f64::from(self.pool.largest) / SPARE
     }
 
     /// Gives back all that was reserved.
