@@ -23,7 +23,7 @@ impl Region {
     /// The tiles in which a view may see any of these.
     pub(crate) fn of(view: &View, balls: impl Iterator<Item = Ball>) -> Self {
         let lens = view.lens();
-        let around = balls.map(|ball| seen(&lens, &ball)).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let around = balls.map(|ball| seen(lens, &ball)).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let [low, high] = around.unwrap_or_default();
         let size = view.size();
         let of_axis = |axis: usize| {
@@ -70,7 +70,8 @@ fn slopes(aside: f64, ahead: f64, radius: f64) -> [f64; 2] {
 fn seen(lens: &Lens, ball: &Ball) -> [DVec2; 2] {
     let middle: DVec3 = lens.to_eye.as_dmat4().transform_point3(ball.center.as_dvec3());
     let (radius, ahead) = (f64::from(ball.radius), -middle.z);
-    if lens.is_perspective && !(ahead - radius > f64::from(lens.near).max(0.0)) {
+    let is_ahead = ahead - radius > f64::from(lens.near).max(0.0);
+    if lens.is_perspective && !is_ahead {
         return [DVec2::NEG_INFINITY, DVec2::INFINITY];
     }
     let of_axis = |aside: f64| {
@@ -125,9 +126,9 @@ mod tests {
             for trial in 0..200 {
                 let at = |i: u32| random(5000 * trial + i);
                 let ball = Ball { center: 2.0 * Vec3::new(at(0), at(1), at(2)), radius: 0.2 + 0.15 * at(3) };
-                let [low, high] = seen(&lens, &ball);
+                let [low, high] = seen(lens, &ball);
                 let points = (0..1500).map(|i| Vec3::new(at(4 + 3 * i), at(5 + 3 * i), at(6 + 3 * i)));
-                let pixels = points.map(|way| pixel_of(&lens, ball.center + ball.radius * way.normalize_or(Vec3::X)));
+                let pixels = points.map(|way| pixel_of(lens, ball.center + ball.radius * way.normalize_or(Vec3::X)));
                 let nothing = [DVec2::INFINITY, DVec2::NEG_INFINITY];
                 let found = pixels.fold(nothing, |[low, high], at| [low.min(at), high.max(at)]);
                 let slack = 0.02 * (high - low);
