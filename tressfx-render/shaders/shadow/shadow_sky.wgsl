@@ -82,6 +82,10 @@ fn shadow_sky(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     let way = lane % LANES_OF_A_CELL;
     let step = step_of(way);
     let is_way = i < size * size * size && way < WAYS;
+    if way == 0u {
+        atomicStore(&near_hair[own], 0u);
+    }
+    workgroupBarrier();
     // Light is asked for next to hair.
     if is_way && is_inside(at + step) && depth_at(at + step) > 0.0 {
         atomicStore(&near_hair[own], 1u);
