@@ -110,11 +110,11 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     @if(shaded || unshaded) { tail = behind; }
     // The next node is fetched before this one is looked at: the time is that of waiting for memory.
     var node = nodes[max(head, 1u) - 1u];
-    var rest_of_list = head;
-    while rest_of_list != NOTHING {
-        rest_of_list = node.w;
+    var next = head;
+    while next != NOTHING {
+        next = node.w;
         var passed = node.xyz;
-        node = nodes[max(rest_of_list, 1u) - 1u];
+        node = nodes[max(next, 1u) - 1u];
         if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             passed = insert(&nearest, passed);
         }

@@ -94,11 +94,7 @@ fn add_skin(grid: ShadowGrid, frame: ShadowFrameUniform, root: Root, thread: u32
         let step = vec3<i32>(place) - vec3<i32>(reach);
         let off = vec3<f32>(step) * unit;
         if dot(off, off) <= radius * radius {
-            let at = cell_at(grid, middle + step);
-            // Balls overlap: most change nothing, and need no turn.
-            if (atomicLoad(&cells[at]) & SKIN) == 0u {
-                atomicOr(&cells[at], SKIN);
-            }
+            atomicOr(&cells[cell_at(grid, middle + step)], SKIN);
         }
     }
 }
