@@ -5,7 +5,7 @@
 //! hair.render.shadow_bounds     compute  one thread eight vertices: the box of the hair as each light sees   HairRenderer
 //! hair.render.shadow_splat      compute  one thread a strand segment: what it takes of the light in cells   HairRenderer
 //! hair.render.shadow_sum        compute  one thread a row of cells: what is taken up to each                HairRenderer
-//! hair.render.shadow_sky        compute  one thread a cell: what arrives there from everywhere              HairRenderer
+//! hair.render.shadow_sky        compute  32 threads a cell: what arrives there from everywhere              HairRenderer
 //! hair.render.shadow_light      compute  one thread a strand vertex: what arrives there of sky and lights   HairRenderer
 //! hair.render.shadow_opaque     compute  one thread a strand vertex: what the opaque scene leaves of lights HairRenderer
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer

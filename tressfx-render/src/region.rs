@@ -28,11 +28,8 @@ impl Region {
         let size = view.size();
         let of_axis = |axis: usize| {
             let last = size[axis].div_ceil(TILE).saturating_sub(1);
-            // What is no number is not known to be outside.
-            let tile = |at: f64, otherwise: u32| {
-                if at.is_nan() { otherwise } else { (at / f64::from(TILE)).clamp(0.0, f64::from(last)) as u32 }
-            };
-            let (first, end) = (tile(low[axis] - MARGIN, 0), tile(high[axis] + MARGIN, last));
+            let tile = |at: f64| (at / f64::from(TILE)).clamp(0.0, f64::from(last)) as u32;
+            let (first, end) = (tile(low[axis] - MARGIN), tile(high[axis] + MARGIN));
             (first, end - first.min(end) + 1)
         };
         let [columns, rows] = [0, 1].map(of_axis);
@@ -61,7 +58,7 @@ impl Region {
 
 /// The smallest and the largest slope of a ray from the eye that meets a ball, so far to the side and ahead.
 fn slopes(aside: f64, ahead: f64, radius: f64) -> [f64; 2] {
-    let square = ahead * ahead - radius * radius;
+    let square = (ahead - radius) * (ahead + radius);
     let root = radius * (aside * aside + square).sqrt();
     [-root, root].map(|root| (aside * ahead + root) / square)
 }
@@ -71,7 +68,9 @@ fn seen(lens: &Lens, ball: &Ball) -> [DVec2; 2] {
     let middle: DVec3 = lens.to_eye.as_dmat4().transform_point3(ball.center.as_dvec3());
     let (radius, ahead) = (f64::from(ball.radius), -middle.z);
     let is_ahead = ahead - radius > f64::from(lens.near).max(0.0);
-    if lens.is_perspective && !is_ahead {
+    // What is no number is not known to be outside, and must not be lost among other balls.
+    let is_known = middle.is_finite() && radius.is_finite() && (is_ahead || !lens.is_perspective);
+    if !is_known {
         return [DVec2::NEG_INFINITY, DVec2::INFINITY];
     }
     let of_axis = |aside: f64| {
@@ -142,10 +141,13 @@ mod tests {
     fn all_tiles_are_taken_where_a_ball_has_no_end_or_the_eye_is_in_it() {
         let all = Region { size: SIZE, first: [0, 0], tiles: [125, 75] };
         let ball = |center: Vec3, radius: f32| Ball { center, radius };
-        let view = perspective();
-        let balls = [ball(Vec3::ZERO, f32::INFINITY), ball(Vec3::NAN, 1.0), ball(Vec3::new(1.0, 2.0, 8.2), 0.5)];
-        for endless in balls {
-            assert_eq!(Region::of(&view, [endless, ball(Vec3::ZERO, 0.1)].into_iter()), all, "{endless:?}");
+        let [small, around_the_eye] = [ball(Vec3::ZERO, 0.1), ball(Vec3::new(1.0, 2.0, 8.2), 0.5)];
+        let endless = [ball(Vec3::ZERO, f32::INFINITY), ball(Vec3::NAN, 1.0)];
+        let of_both = endless.into_iter().flat_map(|ball| [(perspective(), ball), (orthographic(), ball)]);
+        for (view, ball) in of_both.chain([(perspective(), around_the_eye)]) {
+            for balls in [[ball, small], [small, ball]] {
+                assert_eq!(Region::of(&view, balls.into_iter()), all, "{balls:?}");
+            }
         }
     }
 
