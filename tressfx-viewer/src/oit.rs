@@ -9,7 +9,7 @@ use tressfx_render::{AutoDesc, Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Tech
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
     /// How fragments of hair behind each other are sorted and blended
-    #[arg(long, value_enum, default_value_t = OitName::Ppll)]
+    #[arg(long, value_enum, default_value_t = OitName::Auto)]
     oit: OitName,
     /// The nearest fragments of a pixel that are sorted; without it, the default of the technique
     #[arg(long, value_name = "K")]

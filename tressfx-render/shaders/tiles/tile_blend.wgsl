@@ -6,7 +6,9 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
-import package::entries::{LANES, add, color_at, empty, ends, places_of, sort, total};
+import package::entries::{
+    LANES, add, color_at, empty, ends, entry_at, gather, has_ties, paint, pixel_of, places_of, scratch, settle_ties, start_of, total,
+};
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
 import package::line::{fragment_on, is_drawn, line_of, place_of, span_of};
@@ -24,7 +26,7 @@ import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_
 @if(places)
 import package::entries::parts_at;
 @if(hair_output)
-import package::entries::key_at_place;
+import package::entries::sorted_keys;
 @if(hair_output)
 import package::fragment::{FAINT, NOT_FAINT, nearness_of, seen_key};
 @if(hair_output)
@@ -66,8 +68,6 @@ struct Job {
 
 var<workgroup> job: Job;
 var<workgroup> plan: Unit;
-// First vertices of the segments that touch the quarter, some at a time.
-var<workgroup> hits: array<u32, LANES * LOOKS>;
 var<workgroup> hit_count: atomic<u32>;
 // Nearness of the scene.
 var<workgroup> scene: array<f32, PIXELS>;
@@ -132,10 +132,9 @@ fn key_of(nearness: f32) -> u32 {
 }
 
 // What a segment leaves in the quarter. Keys that are found are between the nearest and the farthest of them.
-fn draw(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32>>) {
+fn find(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32>>) {
     let segment = segment_from(start);
     let ribbon = ribbon_of(segment);
-    let paint = paint_of(segment);
     let line = line_of(ribbon);
     let nearest = depth_key(max(ribbon.nearness.x, ribbon.nearness.y));
     let farthest = depth_key(min(ribbon.nearness.x, ribbon.nearness.y));
@@ -143,35 +142,24 @@ fn draw(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32
     if !is_drawn(ribbon, line) || farthest + min(KEYS, LAST_KEY - farthest) < unit.low || nearest - min(KEYS, nearest) >= unit.high {
         return;
     }
-    var left = touched(span_of(ribbon, line), corner) & atomicLoad(&open);
+    let left = touched(span_of(ribbon, line), corner) & atomicLoad(&open);
     if left == 0u {
         return;
     }
-    // What is left of them has a fragment in the unit.
     for (var rest = left; rest != 0u; rest &= rest - 1u) {
         let own = firstTrailingBit(rest);
-        let place = place_of(ribbon, line, pixel_at(corner, own));
+        let pixel = pixel_at(corner, own);
+        let place = place_of(ribbon, line, pixel);
         let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
         let key = key_of(nearness);
         if place < 0.0 || nearness < scene[own] || key < unit.low || key >= unit.high {
-            left &= ~(1u << own);
-        } else {
-            *found = vec2(min((*found).x, key), max((*found).y, key));
+            continue;
         }
-    }
-    var entry = atomicAdd(&total, countOneBits(left));
-    if entry >= ENTRIES && unit.is_mean == 0u {
-        return;
-    }
-    for (; left != 0u; left &= left - 1u) {
-        let own = firstTrailingBit(left);
-        let pixel = pixel_at(corner, own);
-        let fragment = fragment_on(ribbon, line, paint, pixel, place_of(ribbon, line, pixel));
+        *found = vec2(min((*found).x, key), max((*found).y, key));
         if unit.is_mean == 1u {
-            add_to_mean(own, fragment);
+            add_to_mean(own, fragment_on(ribbon, line, paint_of(segment), pixel, place));
         } else {
-            add(entry, own, key_of(fragment.nearness), fragment);
-            entry++;
+            add(own, key, start);
         }
     }
 }
@@ -196,13 +184,13 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         }
         var hit = atomicAdd(&hit_count, countOneBits(own_hits));
         for (; own_hits != 0u; own_hits &= own_hits - 1u) {
-            hits[hit] = references[chunk + firstTrailingBit(own_hits) * LANES + lane] & VERTEX_MASK;
+            scratch[hit] = references[chunk + firstTrailingBit(own_hits) * LANES + lane] & VERTEX_MASK;
             hit++;
         }
         workgroupBarrier();
         let count = atomicLoad(&hit_count);
         for (var i = lane; i < count; i += LANES) {
-            draw(unit, corner, hits[i], &found);
+            find(unit, corner, scratch[i], &found);
         }
         workgroupBarrier();
         if lane == 0u {
@@ -213,6 +201,21 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
     if atomicLoad(&total) > ENTRIES {
         atomicMin(&ends[0], found.x);
         atomicMax(&ends[1], found.y);
+    }
+}
+
+// The colours of the fragments that were found: as many lanes have work as there are fragments. All lanes come here.
+fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
+    for (var place = lane; place < count; place += LANES) {
+        let entry = entry_at(place);
+        let segment = segment_from(start_of(entry));
+        let ribbon = ribbon_of(segment);
+        let line = line_of(ribbon);
+        let pixel = pixel_at(corner, pixel_of(entry));
+        paint(entry, place, fragment_on(ribbon, line, paint_of(segment), pixel, place_of(ribbon, line, pixel)));
+    }
+    if workgroupUniformLoad(&has_ties) != 0u {
+        settle_ties(count, lane);
     }
 }
 
@@ -228,7 +231,7 @@ fn blend_sorted(front: Front, pixel: u32) -> Front {
         @if(hair_output) {
             // What comes later is farther: only the first one counts, and the first one that is not faint.
             if alpha > 0u && (seen == 0u || (seen < NOT_FAINT && alpha >= FAINT)) {
-                seen = seen_key(nearness_of(key_at_place(pixel, i)), alpha);
+                seen = seen_key(nearness_of(sorted_keys[i]), alpha);
             }
         }
     }
@@ -289,7 +292,9 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         collect(unit, own, corner, lane);
         let found = atomicLoad(&total);
         let is_blended = unit.is_mean == 1u || found <= ENTRIES;
-        sort(select(0u, found, is_blended && unit.is_mean == 0u), lane);
+        let count = select(0u, found, is_blended && unit.is_mean == 0u);
+        gather(count, lane);
+        paint_all(count, corner, lane);
         if lane == LANES - 1u {
             // While others blend. The ends are known where there are too many fragments.
             plan = next_unit(unit, found, vec2(atomicLoad(&ends[0]), atomicLoad(&ends[1])));

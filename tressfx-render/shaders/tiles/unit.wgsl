@@ -4,7 +4,7 @@ import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
 // Fragments that a group has room for.
-const ENTRIES: u32 = 256u;
+const ENTRIES: u32 = 384u;
 // Above all keys of fragments.
 const LAST_KEY: u32 = 0xffffffffu;
 // Of its room, what a unit should fill.
