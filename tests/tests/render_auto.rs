@@ -92,6 +92,22 @@ fn more_fragments_than_lists_may_hold_are_for_tiles() {
 }
 
 #[test]
+fn hair_that_lists_could_not_hold_begins_with_tiles() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
+    let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
+    let [of_lists, of_tiles] = [&mut lists, &mut tiles].map(|screen| screen.hair(&[&groom]));
+    for (room, expected) in [(of_lists.counters.fragments / 8, &of_tiles), (2 * of_lists.counters.fragments, &of_lists)]
+    {
+        let lists = PpllDesc::default().max_node_bytes(16 * u64::from(room));
+        let Some(mut screen) = screen(with(auto().dense(1e6).lists(lists))) else { return };
+        let picture = screen.hair(&[&groom]);
+        assert_eq!(screen.renderer.uses_tiles(), std::ptr::eq(expected, &of_tiles), "room for {room}");
+        assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
+    }
+}
+
+#[test]
 fn a_cpu_stays_with_lists() {
     let groom = Groom::wavy(1500, 16, 3, material());
     let Some(mut screen) = screen(with(auto().tiles_on_cpu(false))) else { return };

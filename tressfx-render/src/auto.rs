@@ -33,6 +33,9 @@ const FRAMES: u64 = 16;
 /// Lists come back where hair has less than this share of what tiles take over at.
 const BACK: f64 = 0.7;
 
+/// Times as many fragments as lists hold that are predicted where there is no doubt: a body hides up to two thirds of them.
+const NO_DOUBT: f64 = 3.0;
+
 /// Bytes that tiles keep of a vertex in each of two buffers.
 const BYTES_OF_A_VERTEX: u64 = 16;
 
@@ -99,6 +102,18 @@ struct Predicted {
     vertices: u64,
 }
 
+impl Predicted {
+    /// The larger of it and of what a view needs.
+    fn with(self, view: &View, draws: &[SectionDraw]) -> Self {
+        Self {
+            fragments: self.fragments.max(predict::fragments(view, draws)),
+            references: self.references.max(predict::references(view, draws)),
+            tiles: self.tiles.max(predict::tiles(view, draws)),
+            ..self
+        }
+    }
+}
+
 /// Lists and tiles at work.
 #[derive(Debug)]
 pub(crate) struct Auto {
@@ -161,9 +176,13 @@ impl Auto {
         }
     }
 
+    fn may_use_tiles(&self, backend: &dyn Backend) -> bool {
+        self.tiles_can_draw && (self.desc.tiles_on_cpu || !backend.caps().is_cpu)
+    }
+
     /// Whether a measurement speaks for the technique that is not in use.
     fn speaks_for_other(&mut self, backend: &dyn Backend, counters: &Counters) -> bool {
-        if (backend.caps().is_cpu && !self.desc.tiles_on_cpu) || (!self.uses_tiles && !self.tiles_can_draw) {
+        if !self.uses_tiles && !self.may_use_tiles(backend) {
             return false;
         }
         if !self.uses_tiles && self.predicted.fragments > 0.0 {
@@ -181,12 +200,12 @@ impl Auto {
         let Predicted { fragments, references, tiles, vertices } = self.predicted;
         let wanted = Wanted { kept: references as u64, tiles };
         if self.uses_tiles {
-            self.lists.reserve(backend, Wanted { kept: fragments as u64, tiles: 0 }, &[])?;
+            self.lists.reserve(backend, fragments as u64)?;
         } else if let Some(tiles) = &mut self.tiles {
-            tiles.reserve_counts(backend, wanted, vertices)?;
+            tiles.reserve(backend, wanted, vertices)?;
         } else {
             let mut tiles = Tiles::new(backend, &self.desc.tiles, self.size, self.output)?;
-            tiles.reserve_counts(backend, wanted, vertices)?;
+            tiles.reserve(backend, wanted, vertices)?;
             self.tiles = Some(tiles);
         }
         self.uses_tiles = !self.uses_tiles;
@@ -230,17 +249,16 @@ impl TechniqueInstance for Auto {
         Ok(())
     }
 
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
-        if self.can_tiles_draw(draws) {
-            self.active().predicted(view, draws)
-        } else {
-            self.lists.predicted(view, draws)
-        }
-    }
-
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()> {
+    /// Tiles take over at once where there is no doubt that lists would be bounded.
+    fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         self.leave_tiles_for(draws);
-        self.active_mut().reserve(backend, wanted, draws)
+        let predicted = Predicted { vertices: tiles::vertices(draws), ..Predicted::default() }.with(view, draws);
+        let surely_bounded = predicted.fragments > NO_DOUBT * self.lists.most_unbounded();
+        if !self.uses_tiles && self.may_use_tiles(backend) && surely_bounded {
+            self.predicted = predicted;
+            return self.switch(backend);
+        }
+        self.active_mut().make_room(backend, view, draws)
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
@@ -308,10 +326,7 @@ impl TechniqueInstance for Auto {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         if self.frame % FRAMES == 1 {
-            let Predicted { fragments, references, tiles, .. } = &mut self.predicted;
-            *fragments = fragments.max(predict::fragments(view.view, draws));
-            *references = references.max(predict::references(view.view, draws));
-            *tiles = (*tiles).max(predict::tiles(view.view, draws));
+            self.predicted = self.predicted.with(view.view, draws);
         }
         self.active_mut().draw(list, view, targets, draws)
     }

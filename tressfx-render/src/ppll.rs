@@ -23,7 +23,7 @@ use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
 use crate::shaders::{GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, check_k};
+use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::usage::Usage;
 use crate::views::BoundView;
 use bounded::{Bounded, Prepared};
@@ -217,7 +217,7 @@ impl Ppll {
             return Ok(());
         }
         let was_bounded = self.bounded.is_on();
-        self.reserve(backend, Wanted { kept: counters.wanted.into(), tiles: 0 }, &[])?;
+        self.reserve(backend, counters.wanted.into())?;
         self.unproven = None;
         if was_bounded && counters.wanted > self.pool.largest {
             let fits = self.pool.largest / counters.pixels_with_hair.max(1);
@@ -262,6 +262,24 @@ impl Ppll {
     /// Fragments up to which lists hold all again where they were bounded.
     pub(crate) fn most_unbounded(&self) -> f64 {
         f64::from(self.pool.largest) / SPARE
+    }
+
+    /// Makes room for so many fragments and some more; for more than lists may hold in bounded ones.
+    pub(crate) fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
+        let desc = self.desc;
+        let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
+        let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
+        let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most))? {
+            self.pool.replace(backend, nodes);
+        }
+        if let Some(prepared) = prepared {
+            self.bound(backend, &desc, prepared);
+            self.unproven = Some((self.views, 0));
+        }
+        self.usage.expect([fragments, fragments.min(most), 0]);
+        self.forget_bindings();
+        Ok(())
     }
 
     /// Gives back all that was reserved.
@@ -310,26 +328,8 @@ impl TechniqueInstance for Ppll {
         Ok(())
     }
 
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
-        Wanted { kept: predict::fragments(view, draws) as u64, tiles: 0 }
-    }
-
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, _: &[SectionDraw]) -> Result<()> {
-        let desc = self.desc;
-        let fragments = wanted.kept;
-        let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
-        let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
-        let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
-        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most))? {
-            self.pool.replace(backend, nodes);
-        }
-        if let Some(prepared) = prepared {
-            self.bound(backend, &desc, prepared);
-            self.unproven = Some((self.views, 0));
-        }
-        self.usage.expect([fragments, fragments.min(most), 0]);
-        self.forget_bindings();
-        Ok(())
+    fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
+        self.reserve(backend, predict::fragments(view, draws) as u64)
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {

@@ -259,8 +259,7 @@ impl HairRenderer {
         }
         let draws: Vec<SectionDraw> = draws.iter().filter(|draw| !draw.is_empty()).copied().collect();
         draws.iter().try_for_each(check_section).map_err(|error| Error::rule("hair.render", error.to_string()))?;
-        let wanted = self.order.predicted(view, &draws);
-        self.owner.change(backend, |backend| self.order.reserve(backend, wanted, &draws))
+        self.owner.change(backend, |backend| self.order.make_room(backend, view, &draws))
     }
 
     /// Enlarges the pool to what a view has needed in an earlier frame; nothing happens if it is large enough. `counters`

@@ -27,7 +27,7 @@ use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
 use crate::strands::SectionDraw;
-use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique, check_k};
+use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::views::BoundView;
 use memory::Memory;
 
@@ -138,11 +138,8 @@ impl TechniqueInstance for ShortCut {
     }
 
     /// There is no pool.
-    fn predicted(&self, _: &View, _: &[SectionDraw]) -> Wanted {
-        Wanted::default()
-    }
-
-    fn reserve(&mut self, _: &mut dyn Backend, _: Wanted, _: &[SectionDraw]) -> Result<()> {
+    /// There is no pool.
+    fn make_room(&mut self, _: &mut dyn Backend, _: &View, _: &[SectionDraw]) -> Result<()> {
         Ok(())
     }
 

@@ -56,12 +56,9 @@ pub(crate) trait TechniqueInstance: Debug + Send + Sync {
     /// Makes the buffers whose size depends on that of the view again.
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()>;
 
-    /// What a view of sections is predicted to need room for; nothing where there is no pool.
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted;
-
-    /// Enlarges the pool to this much and [what the next frame may need more](crate::renderer::with_headroom), up to its limit, and
-    /// makes room for the vertices of sections, where the technique keeps any.
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()>;
+    /// Makes room for what a view of sections is predicted to need and [what the next frame may need more](crate::renderer::with_headroom),
+    /// up to the limit of its pool.
+    fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()>;
 
     /// Makes room for what a view has needed. Returns whether there is another room than before.
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool>;

@@ -156,7 +156,7 @@ impl Tiles {
     }
 
     /// Makes room for so many references and tiles and some more, and for vertices.
-    pub(crate) fn reserve_counts(&mut self, backend: &mut dyn Backend, wanted: Wanted, vertices: u64) -> Result<()> {
+    pub(crate) fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, vertices: u64) -> Result<()> {
         self.usage.expect([wanted.kept, wanted.tiles, vertices]);
         let roomy = Wanted { kept: with_headroom(wanted.kept), tiles: with_headroom(wanted.tiles) };
         let grown = self.memory.grow(backend, roomy, vertices);
@@ -241,20 +241,17 @@ impl TechniqueInstance for Tiles {
     }
 
     /// No more than there is room for in one round: only what was measured asks for more rounds.
-    fn predicted(&self, view: &View, draws: &[SectionDraw]) -> Wanted {
+    fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         let references = predict::references(view, draws).min(self.memory.largest_round());
-        Wanted { kept: references as u64, tiles: predict::tiles(view, draws) }
-    }
-
-    fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, draws: &[SectionDraw]) -> Result<()> {
-        self.reserve_counts(backend, wanted, layout::vertices(draws))
+        let wanted = Wanted { kept: references as u64, tiles: predict::tiles(view, draws) };
+        self.reserve(backend, wanted, layout::vertices(draws))
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = (self.capacity(), self.memory.screen.resolved.slots);
         if counters.wanted > before.0 || counters.tiles_with_hair > before.1 {
             let wanted = Wanted { kept: counters.wanted.into(), tiles: counters.tiles_with_hair.into() };
-            self.reserve(backend, wanted, &[])?;
+            self.reserve(backend, wanted, 0)?;
         }
         self.note_density(counters);
         let settled = self.usage.measured([counters.wanted.into(), counters.tiles_with_hair.into(), 0]);

@@ -6,7 +6,6 @@ use super::*;
 use crate::ppll::{K_RANGE, Ppll, PpllDesc};
 use crate::segments::Fill;
 use crate::shortcut::{ShortCut, ShortCutDesc};
-use crate::technique::Wanted;
 use crate::tiles::{Tiles, TilesDesc, TilesUniform};
 use crate::uniforms::{
     LensUniform, LightUniform, MotionUniform, OpaqueScenesUniform, OpaqueUniform, SectionUniform, ShadowFrameUniform,
@@ -158,8 +157,8 @@ fn a_technique_knows_what_it_takes() {
     }
     let mut backend = NullBackend::default();
     let mut pool = Ppll::new(&mut backend, &PpllDesc::default(), [96, 64], Format::Rgba16F).unwrap();
-    pool.reserve(&mut backend, Wanted { kept: 100_000, tiles: 0 }, &[]).unwrap();
+    pool.reserve(&mut backend, 100_000).unwrap();
     pool.resize(&mut backend, [33, 20]).unwrap();
-    pool.reserve(&mut backend, Wanted { kept: 50_000, tiles: 0 }, &[]).unwrap();
+    pool.reserve(&mut backend, 50_000).unwrap();
     assert_eq!(pool.bytes(), backend.memory().bytes);
 }
