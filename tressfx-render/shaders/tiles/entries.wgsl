@@ -91,14 +91,18 @@ fn gather(count: u32, lane: u32) {
         }
         starts[lane] = sum;
     }
-    var own: array<Entry, ENTRIES_OF_A_LANE>;
+    // (Not an array of structs: of one that starts as zero HLSL is made that some compilers refuse.)
+    var own_keys: array<u32, ENTRIES_OF_A_LANE>;
+    var own_sources: array<u32, ENTRIES_OF_A_LANE>;
     for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
-        own[i] = entry_at(lane + i * LANES);
+        let entry = entry_at(lane + i * LANES);
+        own_keys[i] = entry.key;
+        own_sources[i] = entry.source;
     }
     workgroupBarrier();
     for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
         if lane + i * LANES < count {
-            put(own[i]);
+            put(Entry(own_keys[i], own_sources[i]));
         }
     }
     workgroupBarrier();
@@ -181,18 +185,24 @@ fn by_color(place: u32) -> Painted {
 
 // Puts those of one depth into the order of their colours: that in which they were put is not that of every run. All lanes come here.
 fn settle_ties(count: u32, lane: u32) {
-    var own: array<Painted, ENTRIES_OF_A_LANE>;
+    var own_colors: array<vec2<u32>, ENTRIES_OF_A_LANE>;
+    @if(places)
+    var own_parts: array<vec2<u32>, ENTRIES_OF_A_LANE>;
+    var own_places: array<u32, ENTRIES_OF_A_LANE>;
     for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
         if lane + i * LANES < count {
-            own[i] = by_color(lane + i * LANES);
+            let painted = by_color(lane + i * LANES);
+            own_colors[i] = painted.color;
+            @if(places) { own_parts[i] = painted.parts; }
+            own_places[i] = painted.place;
         }
     }
     workgroupBarrier();
     for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
         if lane + i * LANES < count {
-            scratch[own[i].place] = own[i].color.x;
-            scratch[ENTRIES + own[i].place] = own[i].color.y;
-            @if(places) { parts[own[i].place] = own[i].parts; }
+            scratch[own_places[i]] = own_colors[i].x;
+            scratch[ENTRIES + own_places[i]] = own_colors[i].y;
+            @if(places) { parts[own_places[i]] = own_parts[i]; }
         }
     }
     workgroupBarrier();
