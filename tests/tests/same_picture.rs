@@ -218,10 +218,11 @@ fn each_scene_by_each_technique() {
         let stage = Stage::new(&mut grooms, scene);
         for (technique, desc) in scene.setting.techniques() {
             let chooses = technique == "auto" && scene.setting.grows_dense;
+            let is_for_tiles = technique.starts_with("tiles") || (technique == "auto" && scene.setting.is_for_tiles());
             let mut say = |fault| wrong.push(format!("{}, {technique}: {fault}", scene.name));
             let [one, other] = screens.each_mut().map(|screen| {
                 let drawn = stage.drawn(screen, desc, chooses);
-                if screen.renderer.uses_tiles() != (chooses || technique.starts_with("tiles")) {
+                if screen.renderer.uses_tiles() != is_for_tiles {
                     say(String::from("the other technique was chosen"));
                 }
                 faults(scene, &drawn).into_iter().for_each(&mut say);

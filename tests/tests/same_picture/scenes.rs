@@ -113,6 +113,11 @@ const EARLY: Setting = Setting { closed_below: Some(0.3), ..USUAL };
 const DENSE: Setting = Setting { grows_dense: true, ..USUAL };
 
 impl Setting {
+    /// Whether what is chosen automatically is tiles: in the end, or from the beginning, since lists have far too few nodes.
+    pub(crate) fn is_for_tiles(&self) -> bool {
+        self.grows_dense || self.nodes.is_some()
+    }
+
     /// Every technique, so set.
     pub(crate) fn techniques(&self) -> [(&'static str, Technique); 9] {
         let &Self { k, tail, cap, layers, .. } = self;
