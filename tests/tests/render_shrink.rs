@@ -66,9 +66,9 @@ fn what_was_not_needed_for_two_seconds_is_given_back() {
         assert_eq!(rig.changes, 1, "{technique:?}: it might come back");
         rig.frames(1, |_| 0);
         assert_eq!((rig.bytes(), rig.backend.memory().bytes, rig.changes), (first.0, first.1, 2), "{technique:?}");
-        // Half of it is needed: that is no surplus.
+        // Two thirds of it are needed: that is no surplus.
         rig.frames(1, |_| 2_000_000);
-        rig.frames(500, |_| 1_300_000);
+        rig.frames(500, |_| 1_600_000);
         assert_eq!(rig.changes, 3, "{technique:?}");
         rig.frames(240, |_| 600_000);
         assert_eq!((rig.changes, rig.renderer.capacity()), (4, 750_000), "{technique:?}");

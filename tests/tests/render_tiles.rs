@@ -147,44 +147,101 @@ fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, 
     tickets.map(|ticket| bytemuck::pod_collect_to_vec(&screen.backend.read(ticket).ready().expect("it has run")))
 }
 
-#[test]
-fn tile_points_leaves_vertices_on_the_screen() {
-    let Some(mut screen) = screen(tiles) else { return };
-    let pose = Pose { rotation: glam::Quat::from_rotation_y(0.8), translation: Vec3::new(0.1, -0.1, 0.2) };
-    let mut groom = Groom { pose, ..Groom::wavy(37, 12, 9, varied().with(|m| m.tip_width = 0.3)) };
-    groom.positions[5][1] = f32::NAN;
-    let (label, count) = ("hair.render.tile_points", groom.positions.len() as u64);
-    let names = [(label, "points", 4 * count), (label, "paints", 4 * count), (label, "colors", 2 * count)];
-    let [points, paints, colors] = read(&mut screen, &[&groom], names);
-    assert!(colors.iter().any(|&color| color != 0));
-    let half = |word: u32, shift: u32| half::f16::from_bits((word >> shift) as u16).to_f64();
-    let color = |words: &[u32]| DVec4::from_array([(0, 0), (0, 16), (1, 0), (1, 16)].map(|(i, at)| half(words[i], at)));
-    let own: Vec<DVec4> = colors.chunks(2).map(color).collect();
-    for (i, paint) in paints.chunks(4).enumerate() {
-        let beside = [i.saturating_sub(37), i, (i + 37).min(own.len() - 1)].map(|vertex| own[vertex]);
-        let (low, high) = (beside.into_iter().reduce(DVec4::min), beside.into_iter().reduce(DVec4::max));
-        let (found, rounding) = (color(paint), DVec4::splat(0.001));
-        assert!(found.cmpge(low.unwrap() - rounding).all() && found.cmple(high.unwrap() + rounding).all(), "{found}");
-        let tilt = f32::from_bits(paint[2]);
-        let is_end = !(37..37 * 11).contains(&i) || i == 5 + 37;
-        assert!(i == 5 || if is_end { tilt == 1e9 } else { tilt.abs() < 0.5 }, "vertex {i}: {tilt}");
+/// What tiles keep of a vertex.
+struct Kept {
+    /// Its pixel, nearness and radius.
+    point: DVec4,
+    color: DVec4,
+    tilt: f32,
+    leads_on: bool,
+}
+
+impl Kept {
+    fn new(words: &[u32]) -> Self {
+        let point = DVec4::from_array([0, 1, 2, 3].map(|axis| f64::from(f32::from_bits(words[axis]))));
+        Self { point, color: color(&words[4..]), tilt: f32::from_bits(words[6]), leads_on: words[7] == 1 }
     }
+}
+
+/// Four half floats.
+fn color(words: &[u32]) -> DVec4 {
+    let half = |word: u32, shift: u32| half::f16::from_bits((word >> shift) as u16).to_f64();
+    DVec4::from_array([(0, 0), (0, 16), (1, 0), (1, 16)].map(|(i, at)| half(words[i], at)))
+}
+
+/// Where a vertex of a groom is on the screen: its pixel, nearness and radius.
+fn on_screen(screen: &Screen, groom: &Groom, vertex: usize) -> DVec4 {
     let lens = screen.view.lens();
     let to_eye = lens.to_eye.as_dmat4() * groom.pose.matrix().as_dmat4();
-    for (i, point) in points.chunks(4).enumerate() {
-        let point = DVec4::from_array([0, 1, 2, 3].map(|axis| f64::from(f32::from_bits(point[axis]))));
-        if i == 5 {
-            assert!(point.x.abs() > 1e12, "{point}: nothing is drawn from here");
-            continue;
+    let point = to_eye.transform_point3(Vec3::from_slice(&groom.positions[vertex][..3]).as_dvec3());
+    let flat = lens.focal.as_dvec2() * point.truncate() * glam::DVec2::new(1.0, -1.0) / -point.z;
+    let taper = f64::from(groom.material.tip_width);
+    let radius = 0.005 * (taper + (1.0 - taper) * f64::from(groom.thickness[vertex]));
+    (lens.center.as_dvec2() + flat).extend(1.0 / -point.z).extend(radius / -point.z)
+}
+
+/// The vertex of a groom that each of those that are kept is.
+fn sources(screen: &Screen, groom: &Groom, kept: &[Kept]) -> Vec<usize> {
+    let all: Vec<DVec4> = (0..groom.positions.len()).map(|vertex| on_screen(screen, groom, vertex)).collect();
+    let near = |of: &Kept, vertex: usize| (all[vertex] - of.point).abs();
+    let is_it = |of: &Kept, vertex: usize| near(of, vertex).cmple(DVec4::new(1e-4, 1e-4, 1e-6, 1e-8)).all();
+    let source = |of: &Kept| (0..all.len()).find(|&vertex| is_it(of, vertex)).expect("a vertex of the groom");
+    kept.iter().map(source).collect()
+}
+
+#[test]
+fn tile_points_keeps_what_may_be_seen() {
+    let Some(mut screen) = screen(tiles) else { return };
+    let pose = Pose { rotation: glam::Quat::from_rotation_y(0.8), translation: Vec3::new(0.1, -0.1, 0.2) };
+    // Strands of one piece, and of several.
+    for (strands, vertices) in [(37, 12), (5, 75), (150, 2), (9, 33)] {
+        let mut groom = Groom { pose, ..Groom::wavy(strands, vertices, 9, varied().with(|m| m.tip_width = 0.3)) };
+        groom.positions[2][1] = f32::NAN;
+        let (label, all) = ("hair.render.tile_points", groom.positions.len() as u64);
+        let counts = read(&mut screen, &[&groom], [("hair.render.tile_bin", "state", 8)]);
+        let count = u64::from(counts[0][7]);
+        let [words, colors] =
+            read(&mut screen, &[&groom], [(label, "vertices", 8 * count), (label, "colors", 2 * all)]);
+        let kept: Vec<Kept> = words.chunks(8).map(Kept::new).collect();
+        let sources = sources(&screen, &groom, &kept);
+        let own: Vec<DVec4> = colors.chunks(2).map(color).collect();
+        let (stride, last) = (strands as usize, groom.positions.len() - 1);
+        let mut segments = HashSet::new();
+        for (i, (kept, &source)) in kept.iter().zip(&sources).enumerate() {
+            let beside = [source.saturating_sub(stride), source, (source + stride).min(last)].map(|of| own[of]);
+            let (low, high) = (beside.into_iter().reduce(DVec4::min), beside.into_iter().reduce(DVec4::max));
+            let (found, rounding) = (kept.color, DVec4::splat(0.001));
+            assert!(
+                found.cmpge(low.unwrap() - rounding).all() && found.cmple(high.unwrap() + rounding).all(),
+                "{found}"
+            );
+            let is_end = source < stride || source + stride > last || source == 2 + stride;
+            assert!(if is_end { kept.tilt == 1e9 } else { kept.tilt.abs() < 0.8 }, "vertex {source}: {}", kept.tilt);
+            if kept.leads_on {
+                assert_eq!(sources[i + 1], source + stride, "the next vertex is the next one of the strand");
+                assert!(segments.insert(source), "a segment is kept once");
+            }
         }
-        let expected = to_eye.transform_point3(Vec3::from_slice(&groom.positions[i][..3]).as_dvec3());
-        let pixel = lens.center.as_dvec2()
-            + lens.focal.as_dvec2() * expected.truncate() * glam::DVec2::new(1.0, -1.0) / -expected.z;
-        assert!(point.truncate().truncate().distance(pixel) < 1e-4, "{point} is not at {pixel}");
-        assert!((point.z * -expected.z - 1.0).abs() < 1e-6, "{point} is not as near as {expected}");
-        let radius = 0.005 * (0.3 + 0.7 * f64::from(groom.thickness[i])) / -expected.z;
-        assert!((point.w - radius).abs() < 1e-8, "{point} is not {radius} wide");
+        let expected = (strands * (vertices - 1)) as usize;
+        assert_eq!(segments.len(), expected - 1, "all but that without a place on the screen");
+        assert!(kept.len() < expected + 3 * stride, "{} vertices of {strands} strands", kept.len());
     }
+}
+
+#[test]
+fn what_is_behind_the_scene_is_not_kept() {
+    let Some(mut screen) = screen(odd) else { return };
+    let groom = Groom::wavy(400, 12, 3, varied());
+    let open = screen.hair(&[&groom]).counters.vertices;
+    let corners = [[-9.0, -5.0], [0.0, -5.0], [0.0, 15.0]].map(|[x, y]| Vec3::new(x, y, 0.6));
+    let wall = Mesh { positions: corners.to_vec(), normals: vec![Vec3::Z; 3], indices: vec![0, 1, 2] };
+    let picture = screen.scene(&[&wall], &[&groom]);
+    let depth = screen.depth();
+    let kept = picture.counters.vertices;
+    let seen: HashSet<u32> = touched(&screen, &groom, &depth).into_iter().map(|(_, segment)| segment).collect();
+    eprintln!("{open} vertices, behind a wall {kept}, of {} segments that are seen", seen.len());
+    assert_eq!(open, 400 * 12);
+    assert!(kept as usize >= seen.len() && kept < 5 * open / 6, "{kept} of {open}");
 }
 
 /// A triangle that hides a part of the picture, nearer to its right.
@@ -246,8 +303,12 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
         ("hair.render.tile_bin", "references", u64::from(1u32 << 16)),
         ("hair.render.tile_alloc", "queue", 12 + 8 * 96),
         ("hair.render.tile_alloc", "infos", 6 * 96),
+        ("hair.render.tile_points", "vertices", 8 * 4800),
+        ("hair.render.tile_points", "state", 8),
     ];
-    let [bins, references, queue, infos] = read(&mut screen, &[&groom], names);
+    let [bins, references, queue, infos, words, counters] = read(&mut screen, &[&groom], names);
+    let kept: Vec<Kept> = words.chunks(8).take(counters[7] as usize).map(Kept::new).collect();
+    let sources = sources(&screen, &groom, &kept);
     let wanted = queue[0];
     let (sizes, tiles) = (&queue[4..12], &queue[12..]);
     let waiting: Vec<_> = (sizes.iter().zip(tiles.chunks(96)))
@@ -262,7 +323,8 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
     for (tile, first) in waiting {
         let end = bins[63 * 96 + tile as usize];
         for reference in &references[first as usize..end as usize] {
-            *nearest.entry((tile, reference & 0x07ff_ffff)).or_insert(0) += reference >> 31;
+            let source = sources[(reference & 0x03ff_ffff) as usize] as u32;
+            *nearest.entry((tile, source)).or_insert(0) += reference >> 31;
         }
     }
     assert!(nearest.values().all(|&flags| flags == 1), "one slice of a tile is the nearest");

@@ -2,19 +2,15 @@
 
 mod support;
 
+use glam::Vec3;
 use glam::camera::rh;
-use glam::{Mat4, Vec3};
 use tressfx_conformance::render::{Groom, Random, Setup};
-use tressfx_core::backend::{Backend, DepthOrder, Format, TextureDesc};
-use tressfx_core::null::NullBackend;
+use tressfx_core::backend::DepthOrder;
 use tressfx_core::pass::PassList;
-use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Pose, View};
-use tressfx_render::{
-    Counters, HairRenderer, Lights, RenderDesc, SectionDraw, ShadedStrands, Targets, TilesDesc, ViewDraw,
-};
+use tressfx_render::{Counters, SectionDraw, TilesDesc};
 
-use support::hair::{is_sound, material, tiles, varied};
+use support::hair::{endless, is_sound, material, tiles, varied};
 use support::screen;
 
 #[test]
@@ -103,34 +99,34 @@ fn what_is_measured_is_enough_for_the_next_frame() {
     assert_eq!(screen.renderer.capacity(), grown, "enough is enough");
 }
 
-/// What is said where `count` sections are drawn, with or without room for them.
-fn drawn(count: usize, has_room: bool) -> Result<(), String> {
-    let mut backend = NullBackend::default();
-    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(TilesDesc::default());
-    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
-    let mut texture = |format| backend.create_texture(&TextureDesc::new("test", [64, 64], format)).unwrap();
-    let targets = Targets::new(texture(Format::Rgba16F), texture(Format::Depth32F));
-    let groom = Groom::wavy(3, 4, 6, material());
-    let buffers = StrandBuffers::new(&mut backend, groom.shape, Vec3::ZERO).unwrap();
-    let section = ShadedStrands::new(&mut backend, buffers, groom.info.clone()).unwrap();
-    let draws = vec![SectionDraw::new(&section, &groom.material, Pose::IDENTITY); count];
-    let projection = rh::proj::directx::perspective(0.6, 1.0, 50.0, 0.05);
-    let view = View::new(Mat4::from_translation(Vec3::NEG_Z * 3.0), projection, DepthOrder::Reverse, [64, 64]).unwrap();
-    if has_room {
-        renderer.grow_to_predicted(&mut backend, &view, &draws).unwrap();
+#[test]
+fn vertices_without_room_are_counted_and_have_it_in_the_next_frame() {
+    let groom = Groom::wavy(300, 16, 4, material());
+    let Some(mut roomy) = screen(tiles) else { return };
+    let expected = roomy.hair(&[&groom]);
+    assert!(expected.counters.vertices > 4000 && expected.counters.dropped == 0, "{:?}", expected.counters);
+    let Some(mut screen) = screen(tiles) else { return };
+    screen.may_grow = false;
+    let dropping = screen.hair(&[&groom]);
+    assert!(dropping.counters.dropped > 0, "{:?}", dropping.counters);
+    assert!(dropping.counters.vertices == expected.counters.vertices && is_sound(&dropping));
+    // Where vertices are missing, less is referred to than there is.
+    for _ in 0..2 {
+        let measured = screen.hair(&[&groom]).counters;
+        screen.renderer.grow_to_measured(&mut *screen.backend, &measured).unwrap();
     }
-    let lights = Lights::default();
-    let views = [ViewDraw::new(&view, &lights, targets)];
-    renderer.draw(&mut PassList::new(), &views, &draws).map_err(|error| error.to_string())
+    let complete = screen.hair(&[&groom]);
+    assert!(complete.counters == expected.counters && complete.bytes == expected.bytes, "{:?}", complete.counters);
 }
 
 #[test]
-fn sections_without_room_and_too_many_sections_are_refused() {
-    assert_eq!(drawn(64, true), Ok(()));
-    let error = drawn(65, true).unwrap_err();
-    assert!(error.contains("65 sections, tiles can draw 64"), "{error}");
-    let error = drawn(1, false).unwrap_err();
-    assert!(error.contains("there is room for 0: `grow_to_predicted` makes room"), "{error}");
+fn many_sections_are_drawn_as_one() {
+    let parts: Vec<Groom> = (0..100).map(|seed| Groom::wavy(6, 9, seed, varied())).collect();
+    let Some(mut screen) = screen(endless) else { return };
+    let parts: Vec<&Groom> = parts.iter().collect();
+    let (picture, exact) = (screen.hair(&parts), screen.exact(&parts));
+    let difference = picture.difference(&exact);
+    assert!(picture.counters.dropped == 0 && difference.psnr > 80.0, "{difference:?}, {:?}", picture.counters);
 }
 
 #[test]

@@ -18,7 +18,7 @@ use crate::renderer::Targets;
 use crate::resolved::Resolved;
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
-use crate::tiles::{self, MAX_SECTIONS, MAX_VERTICES, Tiles, TilesDesc};
+use crate::tiles::{self, MAX_VERTICES, Tiles, TilesDesc, Vertices};
 use crate::views::BoundView;
 
 /// Measurements in a row that must speak for the other technique before it takes over.
@@ -35,9 +35,6 @@ const BACK: f64 = 0.7;
 
 /// Times as many fragments as lists hold that are predicted where there is no doubt: a body hides up to two thirds of them.
 const NO_DOUBT: f64 = 3.0;
-
-/// Bytes that tiles keep of a vertex in each of two buffers.
-const BYTES_OF_A_VERTEX: u64 = 16;
 
 /// Lists or tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +100,11 @@ struct Predicted {
 }
 
 impl Predicted {
+    /// What no view changes.
+    fn new(draws: &[SectionDraw]) -> Self {
+        Self { vertices: tiles::vertices(draws), ..Self::default() }
+    }
+
     /// The larger of it and of what a view needs.
     fn with(self, view: &View, draws: &[SectionDraw]) -> Self {
         Self {
@@ -148,7 +150,7 @@ impl Auto {
             desc: *desc,
             size,
             output,
-            most_vertices: MAX_VERTICES.min(bytes / BYTES_OF_A_VERTEX),
+            most_vertices: MAX_VERTICES.min(bytes / Vertices::BYTES),
             tiles_can_draw: false,
             lists: Ppll::new(backend, &desc.lists, size, output)?,
             tiles: None,
@@ -198,14 +200,14 @@ impl Auto {
     /// Hands over, with room for what is predicted, so that nothing is dropped.
     fn switch(&mut self, backend: &mut dyn Backend) -> Result<()> {
         let Predicted { fragments, references, tiles, vertices } = self.predicted;
-        let wanted = Wanted { kept: references as u64, tiles };
+        let wanted = Wanted { kept: references as u64, tiles, vertices };
         if self.uses_tiles {
             self.lists.reserve(backend, fragments as u64)?;
         } else if let Some(tiles) = &mut self.tiles {
-            tiles.reserve(backend, wanted, vertices)?;
+            tiles.reserve(backend, wanted)?;
         } else {
             let mut tiles = Tiles::new(backend, &self.desc.tiles, self.size, self.output)?;
-            tiles.reserve(backend, wanted, vertices)?;
+            tiles.reserve(backend, wanted)?;
             self.tiles = Some(tiles);
         }
         self.uses_tiles = !self.uses_tiles;
@@ -213,9 +215,9 @@ impl Auto {
         Ok(())
     }
 
-    /// Whether tiles can draw as many sections and vertices as these have.
+    /// Whether tiles can draw as many vertices as these have.
     fn can_tiles_draw(&self, draws: &[SectionDraw]) -> bool {
-        draws.len() <= MAX_SECTIONS && tiles::vertices(draws) <= self.most_vertices
+        tiles::vertices(draws) <= self.most_vertices
     }
 
     /// Goes back to lists at once where tiles cannot draw what there is.
@@ -252,10 +254,9 @@ impl TechniqueInstance for Auto {
     /// Tiles take over at once where there is no doubt that lists would be bounded.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         self.leave_tiles_for(draws);
-        let predicted = Predicted { vertices: tiles::vertices(draws), ..Predicted::default() }.with(view, draws);
-        let surely_bounded = predicted.fragments > NO_DOUBT * self.lists.most_unbounded();
-        if !self.uses_tiles && self.may_use_tiles(backend) && surely_bounded {
-            self.predicted = predicted;
+        let may_switch = !self.uses_tiles && self.may_use_tiles(backend);
+        if may_switch && predict::fragments(view, draws) > NO_DOUBT * self.lists.most_unbounded() {
+            self.predicted = Predicted::new(draws).with(view, draws);
             return self.switch(backend);
         }
         self.active_mut().make_room(backend, view, draws)
@@ -315,7 +316,7 @@ impl TechniqueInstance for Auto {
         self.frame += 1;
         self.leave_tiles_for(draws);
         if self.frame % FRAMES == 1 {
-            self.predicted = Predicted { vertices: tiles::vertices(draws), ..Predicted::default() };
+            self.predicted = Predicted::new(draws);
         }
         self.active_mut().begin(list, views, draws);
     }

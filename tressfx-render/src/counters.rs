@@ -27,6 +27,8 @@ gpu_struct! {
         pub tiles_with_hair: u32,
         /// Fragments that were to be in order and found no room: they are in the picture, blended behind those that are in order.
         pub merged: u32,
+        /// Vertices of strands that may be seen, of tiles: they were to be kept.
+        pub vertices: u32,
     }
 }
 
@@ -44,7 +46,7 @@ impl Counters {
     /// From the bytes of a read-back.
     ///
     /// # Panics
-    /// If there are not 28 bytes.
+    /// If there are not 32 bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         bytemuck::pod_read_unaligned(bytes)
     }

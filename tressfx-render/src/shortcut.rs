@@ -138,7 +138,6 @@ impl TechniqueInstance for ShortCut {
     }
 
     /// There is no pool.
-    /// There is no pool.
     fn make_room(&mut self, _: &mut dyn Backend, _: &View, _: &[SectionDraw]) -> Result<()> {
         Ok(())
     }

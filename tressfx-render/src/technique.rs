@@ -47,6 +47,8 @@ pub(crate) struct Wanted {
     pub(crate) kept: u64,
     /// Tiles with hair, where only they have room for their pixels.
     pub(crate) tiles: u64,
+    /// Vertices that tiles keep.
+    pub(crate) vertices: u64,
 }
 
 /// An instance of a technique: it turns shaded strands into pixels of a view.

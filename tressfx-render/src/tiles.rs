@@ -25,13 +25,13 @@ use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::usage::Usage;
 use crate::views::BoundView;
-use kernels::{Kernels, alloc_grid, bin_grid};
-use layout::Layout;
+use kernels::{Kernels, alloc_grid};
 use memory::Memory;
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
-pub(crate) use layout::{MAX_SECTIONS, MAX_VERTICES, vertices};
+pub(crate) use layout::{MAX_VERTICES, vertices};
+pub(crate) use memory::Vertices;
 
 /// Exact order in tiles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,6 +119,8 @@ pub(crate) struct Tiles {
     memory: Memory,
     /// References, tiles and vertices.
     usage: Usage<3>,
+    /// Measurements in a row that needed fewer rounds than there are.
+    fitting: u32,
     /// Whether hair was so dense that what it hides is left out.
     is_dense: bool,
     is_cpu: bool,
@@ -126,6 +128,9 @@ pub(crate) struct Tiles {
 
 /// References of a pixel with hair, in the mean of a view, from which on hair is dense.
 const DENSE: f64 = 30.0;
+
+/// Measurements in a row that need fewer rounds than there are, before there are as few.
+const FITTING: u32 = 30;
 
 /// Below so many hair is dense no more, though nothing is referred to that is hidden.
 const LOOSE: f64 = 3.0;
@@ -150,16 +155,17 @@ impl Tiles {
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
             usage: Usage::new(),
+            fitting: 0,
             is_dense: false,
             is_cpu: backend.caps().is_cpu,
         })
     }
 
-    /// Makes room for so many references and tiles and some more, and for vertices.
-    pub(crate) fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted, vertices: u64) -> Result<()> {
-        self.usage.expect([wanted.kept, wanted.tiles, vertices]);
-        let roomy = Wanted { kept: with_headroom(wanted.kept), tiles: with_headroom(wanted.tiles) };
-        let grown = self.memory.grow(backend, roomy, vertices);
+    /// Makes room for so many references and tiles and some more, and for so many vertices.
+    pub(crate) fn reserve(&mut self, backend: &mut dyn Backend, wanted: Wanted) -> Result<()> {
+        self.usage.expect([wanted.kept, wanted.tiles, wanted.vertices]);
+        let roomy = Wanted { kept: with_headroom(wanted.kept), tiles: with_headroom(wanted.tiles), ..wanted };
+        let grown = self.memory.grow(backend, roomy);
         self.forget_bindings();
         grown
     }
@@ -167,7 +173,7 @@ impl Tiles {
     /// Gives back all that was reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
         self.usage = Usage::new();
-        let released = self.memory.shrink(backend, Wanted::default(), 0);
+        let released = self.memory.shrink(backend, Wanted::default());
         self.forget_bindings();
         released
     }
@@ -192,6 +198,11 @@ impl Tiles {
     fn forget_bindings(&mut self) {
         self.kernels.forget_bindings();
         self.composite.bound.clear();
+    }
+
+    /// References, tiles and vertices that there is room for.
+    fn room(&self) -> [u64; 3] {
+        [self.capacity(), self.memory.screen.resolved.slots, self.memory.vertices.count].map(u64::from)
     }
 
     fn few_tiles(&self) -> u32 {
@@ -243,23 +254,31 @@ impl TechniqueInstance for Tiles {
     /// No more than there is room for in one round: only what was measured asks for more rounds.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         let references = predict::references(view, draws).min(self.memory.largest_round());
-        let wanted = Wanted { kept: references as u64, tiles: predict::tiles(view, draws) };
-        self.reserve(backend, wanted, layout::vertices(draws))
+        let (tiles, vertices) = (predict::tiles(view, draws), layout::vertices(draws));
+        self.reserve(backend, Wanted { kept: references as u64, tiles, vertices })
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        let before = (self.capacity(), self.memory.screen.resolved.slots);
-        if counters.wanted > before.0 || counters.tiles_with_hair > before.1 {
-            let wanted = Wanted { kept: counters.wanted.into(), tiles: counters.tiles_with_hair.into() };
-            self.reserve(backend, wanted, 0)?;
+        let before = self.room();
+        let needed = [counters.wanted, counters.tiles_with_hair, counters.vertices].map(u64::from);
+        let [kept, tiles, vertices] = needed;
+        if needed.iter().zip(before).any(|(needed, room)| *needed > room) {
+            let vertices = if vertices > before[2] { with_headroom(vertices) } else { 0 };
+            self.reserve(backend, Wanted { kept, tiles, vertices })?;
         }
         self.note_density(counters);
-        let settled = self.usage.measured([counters.wanted.into(), counters.tiles_with_hair.into(), 0]);
-        if (self.capacity(), self.memory.screen.resolved.slots) != before {
+        let settled = self.usage.measured(needed);
+        if self.room() != before {
+            self.fitting = 0;
             return Ok(true);
         }
+        self.fitting = if self.memory.has_rounds_to_spare(kept) { self.fitting + 1 } else { 0 };
+        if self.fitting >= FITTING {
+            self.memory.spare_rounds(kept);
+            self.fitting = 0;
+        }
         if let Some([kept, tiles, vertices]) = settled {
-            self.memory.shrink(backend, Wanted { kept, tiles }, vertices)?;
+            self.memory.shrink(backend, Wanted { kept, tiles, vertices })?;
             self.forget_bindings();
         }
         Ok(false)
@@ -294,17 +313,11 @@ impl TechniqueInstance for Tiles {
     }
 
     fn check(&self, draws: &[SectionDraw]) -> Result<()> {
-        let (wanted, room) = (Layout::new(draws)?.vertices, self.memory.vertices.count);
-        if wanted > room {
-            let message = format!("{wanted} vertices, there is room for {room}: `grow_to_predicted` makes room");
-            return Err(Error::rule("hair.render.tiles", message));
-        }
-        Ok(())
+        layout::check(draws)
     }
 
-    fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
+    fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
         self.usage.begin_frame();
-        self.usage.expect([0, 0, layout::vertices(draws)]);
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
         self.memory.begin(list, views);
@@ -315,16 +328,15 @@ impl TechniqueInstance for Tiles {
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
-        let layout = Layout::new(draws)?;
         let skips_hidden = self.skips_hidden();
-        let uniforms = layout.uniforms(view.view, draws, self, skips_hidden);
+        let uniforms = layout::uniforms(view.view, draws, self, skips_hidden);
         self.memory.uniforms.upload(list, view.index * memory::UNIFORMS_OF_A_VIEW, &uniforms);
         self.memory.clear(list, view.size);
         self.kernels.depth(list, view, &self.memory, targets.depth)?;
-        for (draw, &first) in draws.iter().zip(&layout.first_vertices) {
-            self.kernels.points(list, view, draw, &self.memory, first)?;
+        for draw in draws {
+            self.kernels.points(list, view, draw, &self.memory)?;
         }
-        self.kernels.bin(list, view, &self.memory, None, Groups::Grid(bin_grid(layout.segments)))?;
+        self.kernels.bin(list, view, &self.memory, None, Groups::Grid(self.memory.bin_grid(draws)))?;
         self.kernels.alloc(list, view, &self.memory, Groups::Grid(alloc_grid(view.size)))?;
         self.rounds(list, view, targets.depth)?;
         if skips_hidden {

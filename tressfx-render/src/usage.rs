@@ -7,7 +7,7 @@ const FRAMES: u64 = 120;
 const MEASUREMENTS: u64 = 30;
 
 /// A pool is made smaller that is more than so many times as large as what was needed.
-const SURPLUS: u64 = 2;
+const SURPLUS: f64 = 1.6;
 
 /// The most that was needed of several things since some frames.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ impl<const N: usize> Usage<N> {
 
 /// Whether a pool of this size is much larger than what it needs.
 pub(crate) fn is_surplus(capacity: u64, needed: u64) -> bool {
-    capacity > needed.saturating_mul(SURPLUS)
+    capacity as f64 > needed as f64 * SURPLUS
 }
 
 #[cfg(test)]

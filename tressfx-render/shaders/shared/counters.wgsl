@@ -15,4 +15,6 @@ struct Counters {
     tiles_with_hair: atomic<u32>,
     // What was merged for want of room. While lists are filled, the fragments that are not to have a node.
     merged: atomic<u32>,
+    // Vertices that may be seen, of tiles.
+    vertices: atomic<u32>,
 }

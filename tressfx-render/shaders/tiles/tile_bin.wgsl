@@ -1,25 +1,24 @@
 // Segments are referred to from the slices of the tiles that they touch. It runs to count the references of each bin, and, once
 // each bin has its place, to store them; where there is no room for all of them, those of some tiles in each round. It is the same
 // code each time, compiled once, so that a compiler cannot round it differently: a bin gets exactly what was counted for it. One
-// thread a segment.
+// thread a vertex, for the segment that begins there.
 
 import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
-import package::segments::{ribbon_of, segment_at};
+import package::segments::{ribbon_of, vertices};
 import package::tile::TILE;
-import package::tiles::{FIRST_QUARTER, IS_NEAREST, TileInfo, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
+import package::tiles::{DISTANCE_MARGIN, FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
+@group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read> infos: array<TileInfo>;
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
 
-// Pixels, and share of a distance, by which a part of a ribbon is taken larger than it is: more than rounding can move a
-// fragment.
+// Pixels by which a part of a ribbon is taken larger than it is: more than rounding can move a fragment.
 const PIXEL_MARGIN: f32 = 0.02;
-const DISTANCE_MARGIN: f32 = 4e-6;
 
 fn refer(bin: u32, reference: u32) {
     if tiles.stores == 0u {
@@ -105,8 +104,8 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         let last = slice_of(begin, distances.y);
         let reference = vertex | quarters_of(span, first, second, row);
         var flag = IS_NEAREST;
-        for (var slice = slice_of(begin, distances.x); slice <= last; slice++) {
-            refer(slice * tile_count() + tile, reference | flag);
+        for (var slice = slice_of(begin, distances.x); slice <= last; slice += STRIDE) {
+            refer(slice * tile_count() + tile, reference | flag | select(0u, REACHES_ON, slice < last));
             flag = 0u;
         }
     }
@@ -116,11 +115,10 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
 fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
             @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
-    if i >= tiles.segments {
+    if i >= min(atomicLoad(&state.counters.vertices), tiles.vertices) || vertices[i].leads_on == 0u {
         return;
     }
-    let segment = segment_at(i);
-    let ribbon = ribbon_of(segment);
+    let ribbon = ribbon_of(i);
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         return;
@@ -128,6 +126,6 @@ fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
     let span = span_of(ribbon, line);
     let edge = i32(TILE);
     for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
-        bin_column(ribbon, line, span, column, segment.start);
+        bin_column(ribbon, line, span, column, i);
     }
 }

@@ -15,10 +15,10 @@ import package::line::{fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
 import package::screen::{scene_nearness, view};
-import package::segments::{paint_of, ribbon_of, segment_from};
+import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
-    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
+    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
     WaitingTiles, begin_of, groups_of_a_tile, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
 };
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
@@ -133,8 +133,7 @@ fn key_of(nearness: f32) -> u32 {
 
 // What a segment leaves in the quarter. Keys that are found are between the nearest and the farthest of them.
 fn find(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32>>) {
-    let segment = segment_from(start);
-    let ribbon = ribbon_of(segment);
+    let ribbon = ribbon_of(start);
     let line = line_of(ribbon);
     let nearest = depth_key(max(ribbon.nearness.x, ribbon.nearness.y));
     let farthest = depth_key(min(ribbon.nearness.x, ribbon.nearness.y));
@@ -157,28 +156,33 @@ fn find(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32
         }
         *found = vec2(min((*found).x, key), max((*found).y, key));
         if unit.is_mean == 1u {
-            add_to_mean(own, fragment_on(ribbon, line, paint_of(segment), pixel, place));
+            add_to_mean(own, fragment_on(ribbon, line, paint_of(start), pixel, place));
         } else {
             add(own, key, start);
         }
     }
 }
 
-// Whether a reference is to be drawn: it touches the quarter, and comes once a unit, since a segment is referred to from slices
-// that follow each other.
+// Whether a reference is to be drawn: its segment touches the quarter and a slice of the unit, and comes once a unit, though it may be
+// referred to from several slices.
 fn is_hit(unit: Unit, quarter: u32, place: u32, reference: u32) -> bool {
-    let is_first = place < bounds[unit.first + 1u] || (reference & IS_NEAREST) != 0u;
-    return is_first && (reference & (FIRST_QUARTER << quarter)) != 0u;
+    var flag = IS_NEAREST;
+    if place < bounds[unit.first + 1u] {
+        flag = select(FIRST_QUARTER << quarter, REACHES_ON, place < bounds[unit.first]);
+    }
+    let wanted = flag | (FIRST_QUARTER << quarter);
+    return (reference & wanted) == wanted;
 }
 
 // Draws the segments of the unit. All lanes come here.
 fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
     var found = vec2(LAST_KEY, 0u);
-    for (var chunk = unit.references.x; chunk < unit.references.y; chunk += LANES * LOOKS) {
+    let end = bounds[unit.end];
+    for (var chunk = bounds[max(unit.first, 1u) - 1u]; chunk < end; chunk += LANES * LOOKS) {
         var own_hits = 0u;
-        for (var i = 0u; i < LOOKS && chunk + i * LANES < unit.references.y; i++) {
+        for (var i = 0u; i < LOOKS && chunk + i * LANES < end; i++) {
             let place = chunk + i * LANES + lane;
-            if place < unit.references.y && is_hit(unit, own.quarter, place, references[place]) {
+            if place < end && is_hit(unit, own.quarter, place, references[place]) {
                 own_hits |= 1u << i;
             }
         }
@@ -208,11 +212,11 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
 fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
     for (var place = lane; place < count; place += LANES) {
         let entry = entry_at(place);
-        let segment = segment_from(start_of(entry));
-        let ribbon = ribbon_of(segment);
+        let start = start_of(entry);
+        let ribbon = ribbon_of(start);
         let line = line_of(ribbon);
         let pixel = pixel_at(corner, pixel_of(entry));
-        paint(entry, place, fragment_on(ribbon, line, paint_of(segment), pixel, place_of(ribbon, line, pixel)));
+        paint(entry, place, fragment_on(ribbon, line, paint_of(start), pixel, place_of(ribbon, line, pixel)));
     }
     if workgroupUniformLoad(&has_ties) != 0u {
         settle_ties(count, lane);

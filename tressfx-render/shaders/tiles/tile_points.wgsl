@@ -1,23 +1,55 @@
-// The vertices of a section on the screen, beside those of all other sections: so that one kernel can draw segments of all of
-// them; and the nearest vertex of each tile. One thread a vertex.
+// What may be seen of a section on the screen: the vertices of its segments, behind those of the sections before, so that one kernel can
+// draw segments of all of them. Segments outside of the picture, and those behind the opaque scene in all tiles that they may touch, are
+// left out. Also the nearest vertex of each tile. One thread a vertex; a group has a piece of each of several strands.
 
-import package::grid::{GROUP, thread_index};
 import package::joint::ROUND;
-import package::ribbon::{End, on_screen, scale_of};
+import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
+import package::segments::{LARGEST_PIXEL, Vertex};
 import package::strands::{Strand, bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, strand_at, tilt_between};
 import package::tile::TILE;
-import package::tiles::{SharedTileInfo, nearness_at, tile_columns};
+import package::tiles::{DISTANCE_MARGIN, SharedTileInfo, ViewState, nearness_at, tile_columns, tiles};
 
-@group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
-@group(0) @binding(7) var<storage, read_write> paints: array<vec4<u32>>;
-
+@group(0) @binding(6) var<storage, read_write> vertices: array<Vertex>;
+@group(0) @binding(7) var<storage, read_write> state: ViewState;
 @group(0) @binding(8) var<storage, read_write> infos: array<SharedTileInfo>;
 
+const LANES: u32 = 256u;
+// A piece of a strand has at most so many segments: a bit each, and one for the vertex at its end.
+const MOST_SEGMENTS: u32 = 31u;
+// Strands of a group: those whose pieces have two vertices.
+const MOST_STRANDS: u32 = LANES / 2u;
 // The nearest vertex is looked for among so many strands: it decides about speed alone.
 const SAMPLES: u32 = 8192u;
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
+// Whether a segment is hidden is not looked for in more tiles than this.
+const MOST_TILES: i32 = 16;
+
+// The points of the group: a vertex of each strand, then the next ones.
+var<workgroup> points: array<vec4<f32>, LANES>;
+// Of each strand, a bit for each segment that may be seen.
+var<workgroup> seen: array<atomic<u32>, MOST_STRANDS>;
+// Vertices of all strands before that are kept, and where the first of all is.
+var<workgroup> starts: array<u32, MOST_STRANDS>;
+var<workgroup> first_place: u32;
+
+// How strands are cut into pieces, all alike: a piece ends with the vertex that the next one begins with.
+struct Pieces {
+    // Of a strand.
+    count: u32,
+    // Of a piece.
+    segments: u32,
+    // Of a group.
+    strands: u32,
+}
+
+fn pieces() -> Pieces {
+    let segments = section.lod.vertices - 1u;
+    let count = (segments + MOST_SEGMENTS - 1u) / MOST_SEGMENTS;
+    let own = (segments + count - 1u) / count;
+    return Pieces(count, own, LANES / (own + 1u));
+}
 
 // A vertex as `segments` reads it.
 fn point_of(end: End) -> vec4<f32> {
@@ -30,12 +62,19 @@ fn point_of(end: End) -> vec4<f32> {
     return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
 }
 
-fn paint_of_vertex(strand: Strand, vertex: u32) -> vec4<u32> {
+fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
+    if !is_sound_at(strand, vertex) {
+        return NOWHERE;
+    }
+    return point_of(end_at(strand, vertex));
+}
+
+fn vertex_at(strand: Strand, vertex: u32, point: vec4<f32>, leads_on: bool) -> Vertex {
     let beside = neighbours_of(strand, vertex);
     let bend = bend_at(strand, vertex, beside);
     let paint = paint_between(bend, strand, vertex, beside);
     let tilt = select(tilt_between(bend), ROUND, any(beside == vec2(vertex)));
-    return vec4(pack2x16float(paint.rg), pack2x16float(paint.ba), bitcast<u32>(tilt), 0u);
+    return Vertex(point, vec2(pack2x16float(paint.rg), pack2x16float(paint.ba)), tilt, u32(leads_on));
 }
 
 fn note_nearest(point: vec4<f32>) {
@@ -52,22 +91,101 @@ fn note_nearest(point: vec4<f32>) {
     }
 }
 
-@compute @workgroup_size(GROUP)
+// Pixels beside the line between two points within which a segment may leave fragments, its ends and turns included.
+fn margin_between(a: vec4<f32>, b: vec4<f32>) -> f32 {
+    let focal = abs(view.lens.focal.x) + abs(view.lens.focal.y) + abs(view.lens.skew);
+    return 1.5 * (max(a.w, b.w) * focal + 1.0) + 1.0;
+}
+
+// Whether a segment may be seen.
+fn may_be_seen(a: vec4<f32>, b: vec4<f32>) -> bool {
+    if !is_sound(a.xyz) || !is_sound(b.xyz) {
+        return false;
+    }
+    let margin = margin_between(a, b);
+    if min(a.w, b.w) < 0.0 || any(max(abs(a.xy), abs(b.xy)) + margin >= vec2(LARGEST_PIXEL)) {
+        return true;
+    }
+    let low = vec2<i32>(floor(max(min(a.xy, b.xy) - margin, vec2(0.0)))) / i32(TILE);
+    let high = vec2<i32>(floor(min(max(a.xy, b.xy) + margin, vec2<f32>(view.size) - 1.0))) / i32(TILE);
+    if any(max(a.xy, b.xy) + margin < vec2(0.0)) || any(low > high) {
+        return false;
+    }
+    if (high.x - low.x + 1) * (high.y - low.y + 1) > MOST_TILES {
+        return true;
+    }
+    let nearest = max(a.z, b.z) * (1.0 + DISTANCE_MARGIN);
+    for (var row = low.y; row <= high.y; row++) {
+        for (var column = low.x; column <= high.x; column++) {
+            if nearest >= infos[u32(row) * tile_columns() + u32(column)].scene {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// The vertices of segments that may be seen, a bit each.
+fn kept_of(own: u32) -> u32 {
+    let segments = atomicLoad(&seen[own]);
+    return segments | (segments << 1u);
+}
+
+// Finds places for what is kept of all strands of the group. All lanes come here.
+fn place_all(strands: u32, lane: u32) {
+    if lane < strands {
+        var sum = 0u;
+        for (var i = 0u; i < lane; i++) {
+            sum += countOneBits(kept_of(i));
+        }
+        starts[lane] = sum;
+    }
+    workgroupBarrier();
+    if lane == 0u {
+        first_place = atomicAdd(&state.counters.vertices, starts[strands - 1u] + countOneBits(kept_of(strands - 1u)));
+    }
+    workgroupBarrier();
+}
+
+@compute @workgroup_size(LANES)
 fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                @builtin(local_invocation_index) lane: u32) {
-    let i = thread_index(group, groups, lane);
-    if i >= section.lod.strands * section.lod.vertices {
+    let pieces = pieces();
+    let index = group.y * groups.x + group.x;
+    let own = lane % pieces.strands;
+    let own_vertex = lane / pieces.strands;
+    let number = index / pieces.count * pieces.strands + own;
+    let strand = strand_at(number);
+    let vertex = index % pieces.count * pieces.segments + own_vertex;
+    let exists = own_vertex <= pieces.segments && number < section.lod.strands && vertex < section.lod.vertices;
+    var point = NOWHERE;
+    if exists {
+        point = screen_point(strand, vertex);
+        if number % max(section.lod.strands / SAMPLES, 1u) == 0u && is_sound(point.xyz) {
+            note_nearest(point);
+        }
+    }
+    points[lane] = point;
+    if lane < pieces.strands {
+        atomicStore(&seen[lane], 0u);
+    }
+    workgroupBarrier();
+    if exists && own_vertex < pieces.segments && may_be_seen(point, points[lane + pieces.strands]) {
+        atomicOr(&seen[own], 1u << own_vertex);
+    }
+    workgroupBarrier();
+    place_all(pieces.strands, lane);
+    let kept = kept_of(own);
+    if !exists || ((kept >> own_vertex) & 1u) == 0u {
         return;
     }
-    let number = i % section.lod.strands;
-    let strand = strand_at(number);
-    let vertex = i / section.lod.strands;
-    let sound = is_sound_at(strand, vertex);
-    let point = select(NOWHERE, point_of(end_at(strand, vertex)), sound);
-    points[i] = point;
-    paints[i] = paint_of_vertex(strand, vertex);
-    let step = max(section.lod.strands / SAMPLES, 1u);
-    if sound && number % step == 0u {
-        note_nearest(point);
+    let place = first_place + starts[own] + countOneBits(kept & ((1u << own_vertex) - 1u));
+    let is_seen = ((atomicLoad(&seen[own]) >> own_vertex) & 1u) == 1u;
+    let leads_on = is_seen && place + 1u < tiles.vertices;
+    if place < tiles.vertices {
+        vertices[place] = vertex_at(strand, vertex, point, leads_on);
+    }
+    if is_seen != leads_on {
+        atomicAdd(&state.counters.dropped, 1u);
     }
 }

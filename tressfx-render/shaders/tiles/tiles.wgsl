@@ -8,7 +8,6 @@ import package::tile::TILE;
 const SLICES: u32 = 64u;
 // Kinds of tiles by the number of their references, the heaviest last.
 const CLASSES: u32 = 8u;
-const MAX_SECTIONS: u32 = 64u;
 // Quarters of a tile, row by row: each is blended by a group.
 const QUARTERS: u32 = 4u;
 // Parts of a quarter, row by row, of 2 x 2 pixels. Where few tiles have hair, each is blended by a group, so that there are more groups,
@@ -17,18 +16,18 @@ const PARTS: u32 = 4u;
 // A bit for each part of a tile, those of the first quarter first.
 const ALL_PARTS: u32 = 0xffffu;
 const PARTS_OF_A_QUARTER: u32 = 0xfu;
-// Bits of a reference: whether it comes from the nearest slice that the segment touches in the tile; whether the segment touches
-// the first quarter of the tile, with those of the other quarters above; and the segment's first vertex.
+// A segment is referred to from the nearest slice that it touches in the tile, and from every second one behind it.
+const STRIDE: u32 = 2u;
+// Bits of a reference: whether it comes from the nearest slice; whether the segment touches the next slice too; whether it touches the
+// first quarter of the tile, with those of the other quarters above; and the segment's first vertex.
 const IS_NEAREST: u32 = 0x80000000u;
-const FIRST_QUARTER: u32 = 0x08000000u;
-const VERTEX_MASK: u32 = 0x07ffffffu;
+const REACHES_ON: u32 = 0x40000000u;
+const FIRST_QUARTER: u32 = 0x04000000u;
+const VERTEX_MASK: u32 = 0x03ffffffu;
 
 struct TilesUniform {
-    // Segments of all sections.
-    segments: u32,
-    // Sections that are drawn.
-    sections: u32,
-    // References that there is room for.
+    // Vertices and references that there is room for.
+    vertices: u32,
     capacity: u32,
     // 0 to count references, 1 to store them.
     stores: u32,
@@ -51,15 +50,16 @@ struct TilesUniform {
     slots: u32,
     // Tiles that are few.
     few: u32,
-    unused: u32,
+    unused: vec2<u32>,
     // The grids of `tile_bin` and `tile_alloc`.
     bin_groups: vec4<u32>,
     alloc_groups: vec4<u32>,
-    // Of each section: its first segment, its first vertex, its strands.
-    layouts: array<vec4<u32>, MAX_SECTIONS>,
 }
 
-@group(0) @binding(1) var<uniform> tiles: TilesUniform;
+@group(0) @binding(12) var<uniform> tiles: TilesUniform;
+
+// Share of a distance by which a ribbon is taken nearer than it is: more than rounding can move a fragment.
+const DISTANCE_MARGIN: f32 = 4e-6;
 
 // Groups in a row of the grid that blends tiles.
 const ROW: u32 = 32768u;

@@ -10,7 +10,7 @@ const LAST_KEY: u32 = 0xffffffffu;
 // Of its room, what a unit should fill.
 const FILL: f32 = 0.75;
 // Fragments that a reference of the tile leaves in a quarter of it, before anything is known.
-const FIRST_RATE: f32 = 1.25;
+const FIRST_RATE: f32 = 2.0;
 // However few fragments references leave, a unit has no more of them than ENTRIES / LEAST_RATE.
 const LEAST_RATE: f32 = 0.0625;
 
@@ -21,8 +21,6 @@ struct Unit {
     // The first key, and the one after the last.
     low: u32,
     high: u32,
-    // The references of the slices: the first, and the one after the last.
-    references: vec2<u32>,
     // Fragments that a reference left in the last unit.
     rate: f32,
     // 1 where fragments are blended as their mean.
@@ -53,13 +51,18 @@ fn first_key(slice: u32) -> u32 {
 }
 
 fn unit_of(first: u32, end: u32, low: u32, high: u32, rate: f32) -> Unit {
-    return Unit(first, end, low, high, vec2(bounds[first], bounds[end]), rate, 0u);
+    return Unit(first, end, low, high, rate, 0u);
+}
+
+// References of its slices.
+fn references_of(unit: Unit) -> u32 {
+    return bounds[unit.end] - bounds[unit.first];
 }
 
 // As many slices from this one on as should fill the list, at least one, and none from `most` on.
 fn unit_from(first: u32, most: u32, rate: f32) -> Unit {
     if first == SLICES || first_key(first) >= last_key {
-        return Unit(SLICES, SLICES, 0u, 0u, vec2(0u), rate, 0u);
+        return Unit(SLICES, SLICES, 0u, 0u, rate, 0u);
     }
     let room = u32(FILL * f32(ENTRIES) / rate);
     var end = first + 1u;
@@ -73,7 +76,7 @@ fn unit_from(first: u32, most: u32, rate: f32) -> Unit {
         }
     }
     let unit = unit_of(first, end, first_key(first), first_key(end), rate);
-    let expected = rate * f32(unit.references.y - unit.references.x);
+    let expected = rate * f32(references_of(unit));
     if end == first + 1u && expected > f32(ENTRIES) {
         return beginning_of(unit, FILL * f32(ENTRIES) / expected);
     }
@@ -117,7 +120,7 @@ fn part_of(unit: Unit, found: u32, ends: vec2<u32>, rate: f32) -> Unit {
 fn next_unit(unit: Unit, found: u32, ends: vec2<u32>) -> Unit {
     var rate = unit.rate;
     if unit.low == first_key(unit.first) && unit.high == first_key(unit.end) {
-        rate = max(f32(found) / f32(max(unit.references.y - unit.references.x, 1u)), LEAST_RATE);
+        rate = max(f32(found) / f32(max(references_of(unit), 1u)), LEAST_RATE);
     }
     if found > ENTRIES && unit.is_mean == 0u {
         return part_of(unit, found, ends, rate);

@@ -6,6 +6,7 @@ use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, Groups, PassList};
 use tressfx_core::shader::{Binding, Kernel, Module, Specialization};
 
+use super::layout::points_grid;
 use super::memory::Memory;
 use crate::bound::Bound;
 use crate::output::Output;
@@ -71,8 +72,8 @@ impl<K: Eq + std::hash::Hash> Pass<K> {
 pub(crate) struct Kernels {
     /// By the scene.
     depth: Pass<TextureId>,
-    /// By section, its place and its vertices.
-    points: Pass<(BufferId, u32, u32)>,
+    /// By section.
+    points: Pass<BufferId>,
     /// By the round that it stores, or none.
     bin: Pass<Option<u32>>,
     alloc: Pass<()>,
@@ -81,9 +82,9 @@ pub(crate) struct Kernels {
     reopen: Pass<()>,
 }
 
-/// The groups of `tile_bin`.
-pub(crate) fn bin_grid(segments: u32) -> Grid {
-    Grid::for_threads(segments, GROUP)
+/// The groups of `tile_bin` where there are at most so many vertices.
+pub(crate) fn bin_grid(vertices: u32) -> Grid {
+    Grid::for_threads(vertices, GROUP)
 }
 
 /// The groups of `tile_alloc`, and of `tile_depth`.
@@ -136,29 +137,27 @@ impl Kernels {
         kernels.map(|kernel| &*kernel.shader)
     }
 
-    /// The vertices of a section on the screen, from the place `first` on.
+    /// What may be seen of a section, behind what there is of others.
     pub(crate) fn points(
         &mut self,
         list: &mut PassList,
         view: &BoundView,
         draw: &SectionDraw,
         memory: &Memory,
-        first: u32,
     ) -> Result<()> {
-        let (strands, vertices) = (draw.strands, u64::from(draw.vertices()));
-        let first_vertex = u64::from(first);
+        let strands = draw.strands;
         let resources = [
             ("view", view.uniform),
             ("section", strands.uniform.into()),
             ("positions", strands.buffers.positions.into()),
             ("colors", strands.colors.into()),
             ("thickness", strands.thickness().into()),
-            ("points", memory.vertices.points.range(16 * first_vertex, 16 * vertices)),
-            ("paints", memory.vertices.paints.range(16 * first_vertex, 16 * vertices)),
+            ("tiles", memory.uniform(view.index, None)),
+            ("vertices", memory.vertices.buffer.into()),
+            ("state", memory.counters.of(view.index).into()),
             ("infos", memory.screen.infos.into()),
         ];
-        let grid = Grid::for_threads(draw.vertices(), GROUP);
-        self.points.record(list, (view.index, (strands.colors, first, draw.vertices())), Groups::Grid(grid), &resources)
+        self.points.record(list, (view.index, strands.colors), Groups::Grid(points_grid(draw)), &resources)
     }
 
     /// The farthest that the scene shows in each tile.
@@ -191,8 +190,8 @@ impl Kernels {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, round)),
-            ("points", memory.vertices.points.into()),
-            ("paints", memory.vertices.paints.into()),
+            ("vertices", memory.vertices.buffer.into()),
+            ("state", memory.counters.of(view.index).into()),
             ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
@@ -247,8 +246,7 @@ impl Kernels {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, Some(round))),
-            ("points", memory.vertices.points.into()),
-            ("paints", memory.vertices.paints.into()),
+            ("vertices", memory.vertices.buffer.into()),
             ("state", memory.counters.of(view.index).into()),
             ("scene_depth", scene_depth.into()),
             ("bins", memory.screen.bins.into()),

@@ -1,4 +1,4 @@
-//! Where the segments of all sections are, and how far from the eye.
+//! How many vertices sections have for tiles, and how far from the eye they are.
 
 use tressfx_core::error::{Error, Result};
 use tressfx_core::gpu_struct;
@@ -6,20 +6,21 @@ use tressfx_core::pass::Grid;
 use tressfx_core::view::View;
 
 use super::Tiles;
-use super::kernels::{alloc_grid, bin_grid};
+use super::kernels::alloc_grid;
 use crate::strands::SectionDraw;
+use crate::uniforms::LodUniform;
 
-/// Sections that can be drawn together.
-pub(crate) const MAX_SECTIONS: usize = 64;
-
-/// Vertices that can be drawn together: a reference has 27 bits for one.
-pub(crate) const MAX_VERTICES: u64 = 1 << 27;
+/// Vertices that can be drawn together: a reference has 26 bits for one.
+pub(crate) const MAX_VERTICES: u64 = 1 << 26;
 
 /// Slices of depth.
 pub(crate) const SLICES: u32 = 64;
 
-/// The vertices of a section begin at a multiple of this, since ranges of bindings are aligned to 256 bytes.
-const VERTEX_ALIGNMENT: u32 = 32;
+/// Lanes of a group of `tile_points`.
+const LANES: u32 = 256;
+
+/// Segments of a piece of a strand, at most: see `tile_points.wgsl`.
+const MOST_SEGMENTS: u32 = 31;
 
 /// How much further than at rest hair is expected from the middle of its section. What is further away still comes in its
 /// order, with more work.
@@ -28,10 +29,8 @@ const SWING: f32 = 1.1;
 gpu_struct! {
     /// What the kernels know of the segments and of the slices.
     pub(crate) struct TilesUniform {
-        /// Segments of all sections.
-        pub segments: u32,
-        /// Sections that are drawn.
-        pub sections: u32,
+        /// Vertices that there is room for.
+        pub vertices: u32,
         /// References that there is room for.
         pub capacity: u32,
         /// 0 to count references, 1 to store them.
@@ -59,93 +58,87 @@ gpu_struct! {
         /// Tiles that are few: each of them is blended by more groups.
         pub few: u32,
         /// Nothing.
-        pub unused: u32,
+        pub unused: [u32; 2],
         /// Groups of `tile_bin`, and nothing.
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
         pub alloc_groups: [u32; 4],
-        /// Of each section: its first segment, its first vertex, its strands that are drawn, nothing.
-        pub layouts: [[u32; 4]; MAX_SECTIONS],
     }
 }
 
-/// Vertices that sections take at most, with all their detail, and what is left free between them.
+/// Vertices that sections take at most, with all their detail and where nothing hides them.
 pub(crate) fn vertices(draws: &[SectionDraw]) -> u64 {
     let of = |draw: &SectionDraw| {
         let shape = draw.drawn_shape();
-        (u64::from(shape.strands()) * u64::from(shape.vertices)).next_multiple_of(VERTEX_ALIGNMENT.into())
+        kept(shape.strands(), shape.vertices)
     };
     draws.iter().map(of).sum()
 }
 
-/// Where the sections of a frame are.
-#[derive(Debug)]
-pub(crate) struct Layout {
-    pub(crate) segments: u32,
-    pub(crate) vertices: u64,
-    pub(crate) first_vertices: Vec<u32>,
-    sections: [[u32; 4]; MAX_SECTIONS],
+/// Pieces of a strand with so many vertices.
+fn pieces(vertices: u32) -> u32 {
+    (vertices - 1).div_ceil(MOST_SEGMENTS)
 }
 
-impl Layout {
-    /// # Errors
-    /// If there are too many sections, or more vertices than can be counted.
-    pub(crate) fn new(draws: &[SectionDraw]) -> Result<Self> {
-        let rule = |message: String| Error::rule("hair.render.tiles", message);
-        if draws.len() > MAX_SECTIONS {
-            return Err(rule(format!("{} sections, tiles can draw {MAX_SECTIONS}", draws.len())));
-        }
-        let vertices = vertices(draws);
-        if vertices > MAX_VERTICES {
-            return Err(rule(format!("{vertices} vertices, tiles can draw {MAX_VERTICES}")));
-        }
-        let (mut segment, mut vertex) = (0, 0);
-        let mut sections = [[0; 4]; MAX_SECTIONS];
-        let mut first_vertices = Vec::new();
-        for (section, draw) in sections.iter_mut().zip(draws) {
-            *section = [segment, vertex, draw.lod_uniform().strands, 0];
-            first_vertices.push(vertex);
-            segment += draw.segments();
-            vertex += draw.vertices().next_multiple_of(VERTEX_ALIGNMENT);
-        }
-        Ok(Self { segments: segment, vertices, first_vertices, sections })
-    }
+/// Vertices of so many strands with so many each: two pieces have the one between them.
+fn kept(strands: u32, vertices: u32) -> u64 {
+    u64::from(strands) * u64::from(vertices + pieces(vertices) - 1)
+}
 
-    /// What the kernels are given: for counting, and for storing in each round.
-    pub(crate) fn uniforms(
-        &self,
-        view: &View,
-        draws: &[SectionDraw],
-        tiles: &Tiles,
-        skips_hidden: bool,
-    ) -> Vec<TilesUniform> {
-        let (desc, memory) = (&tiles.desc, &tiles.memory);
-        let references = &memory.references;
-        let [nearest, farthest] = distances(view, draws);
-        let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
-            segments: self.segments,
-            sections: draws.len() as u32,
-            capacity: references.count,
-            stores,
-            nearest,
-            depth: farthest - nearest,
-            closed_below: desc.closed_below,
-            first,
-            end,
-            covered: references.covered(),
-            rounds: references.rounds,
-            window: references.window(),
-            skips_hidden: skips_hidden.into(),
-            slots: memory.screen.resolved.slots,
-            few: tiles.few_tiles(),
-            unused: 0,
-            bin_groups: padded(bin_grid(self.segments)),
-            alloc_groups: padded(alloc_grid(view.size())),
-            layouts: self.sections,
-        };
-        let rounds = (0..references.rounds).map(|round| uniform(1, references.round(round)));
-        std::iter::once(uniform(0, [0, u32::MAX])).chain(rounds).collect()
+/// The groups of `tile_points` for a section.
+pub(crate) fn points_grid(draw: &SectionDraw) -> Grid {
+    let LodUniform { strands, vertices, .. } = draw.lod_uniform();
+    let pieces = pieces(vertices);
+    let of_a_group = LANES / ((vertices - 1).div_ceil(pieces) + 1);
+    Grid::for_threads(strands.div_ceil(of_a_group) * pieces, 1)
+}
+
+/// # Errors
+/// If there are more vertices than can be drawn.
+pub(crate) fn check(draws: &[SectionDraw]) -> Result<()> {
+    let vertices = vertices(draws);
+    if vertices > MAX_VERTICES {
+        let message = format!("{vertices} vertices, tiles can draw {MAX_VERTICES}");
+        return Err(Error::rule("hair.render.tiles", message));
     }
+    Ok(())
+}
+
+/// What the kernels are given: for counting, and for storing in each round.
+pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_hidden: bool) -> Vec<TilesUniform> {
+    let (desc, memory) = (&tiles.desc, &tiles.memory);
+    let references = &memory.references;
+    let [nearest, farthest] = distances(view, draws);
+    let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
+        vertices: memory.vertices.count,
+        capacity: references.count,
+        stores,
+        nearest,
+        depth: farthest - nearest,
+        closed_below: desc.closed_below,
+        first,
+        end,
+        covered: references.covered(),
+        rounds: references.rounds,
+        window: references.window(),
+        skips_hidden: skips_hidden.into(),
+        slots: memory.screen.resolved.slots,
+        few: tiles.few_tiles(),
+        unused: [0; 2],
+        bin_groups: padded(memory.bin_grid(draws)),
+        alloc_groups: padded(alloc_grid(view.size())),
+    };
+    let rounds = (0..references.rounds).map(|round| uniform(1, references.round(round)));
+    std::iter::once(uniform(0, [0, u32::MAX])).chain(rounds).collect()
+}
+
+/// Vertices that sections take at most with the detail that they are drawn with.
+pub(crate) fn drawn_vertices(draws: &[SectionDraw]) -> u64 {
+    let of = |draw: &SectionDraw| {
+        let lod = draw.lod_uniform();
+        kept(lod.strands, lod.vertices)
+    };
+    draws.iter().map(of).sum()
 }
 
 fn padded(Grid([x, y, z]): Grid) -> [u32; 4] {

@@ -3,16 +3,18 @@
 use tressfx_core::backend::{Backend, BufferDesc};
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
-use tressfx_core::pass::{Groups, PassList};
+use tressfx_core::pass::{Grid, Groups, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::uniform_array::UniformArray;
 
 use super::TilesDesc;
-use super::layout::{SLICES, TilesUniform};
+use super::kernels::bin_grid;
+use super::layout::{MAX_VERTICES, SLICES, TilesUniform, drawn_vertices};
 use crate::counters::ViewCounters;
 use crate::output::Output;
 use crate::renderer::{HEADROOM, with_headroom};
 use crate::resolved::{Resolved, storage, tile_count};
+use crate::strands::SectionDraw;
 use crate::technique::Wanted;
 use crate::usage::is_surplus;
 use crate::views::MAX_VIEWS;
@@ -31,6 +33,9 @@ pub(crate) const MAX_ROUNDS: u32 = 64;
 
 /// References that there is room for at least, unless fewer are allowed.
 const LEAST_REFERENCES: u32 = 1 << 16;
+
+/// Vertices that there is room for at least.
+const LEAST_VERTICES: u32 = 1 << 10;
 
 /// Tiles whose resolved pixels have room at least.
 const LEAST_SLOTS: u32 = 256;
@@ -53,25 +58,25 @@ const AGAIN_BYTES: u64 = 2 * GRID_BYTES;
 /// Bytes of what is known of a tile.
 const INFO_BYTES: u64 = 24;
 
-/// Vertices of all sections.
+/// Vertices of all sections that may be seen.
 #[derive(Debug)]
 pub(crate) struct Vertices {
-    /// `vec4<f32>` a vertex, see `segments.wgsl`.
-    pub(crate) points: BufferId,
-    /// `vec4<u32>` a vertex: colour and opacity of its surface as four half floats, and its tilt, see `joint.wgsl`.
-    pub(crate) paints: BufferId,
+    /// `Vertex` of `segments.wgsl`.
+    pub(crate) buffer: BufferId,
     /// How many there is room for.
-    pub(crate) count: u64,
+    pub(crate) count: u32,
 }
 
 impl Vertices {
-    fn new(backend: &mut dyn Backend, count: u64) -> Result<Self> {
-        let points = storage(backend, "hair.render.points", 16 * count)?;
-        Ok(Self { points, paints: storage(backend, "hair.render.paints", 16 * count)?, count })
+    /// Bytes of a vertex.
+    pub(crate) const BYTES: u64 = 32;
+
+    fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
+        Ok(Self { buffer: storage(backend, "hair.render.vertices", Self::BYTES * u64::from(count))?, count })
     }
 
     fn bytes(&self) -> u64 {
-        2 * (16 * self.count).max(16)
+        Self::BYTES * u64::from(self.count)
     }
 }
 
@@ -172,6 +177,7 @@ pub(crate) fn largest_binding(size: [u32; 2], output: Output) -> u64 {
 #[derive(Debug)]
 pub(crate) struct Memory {
     most_references: u32,
+    most_vertices: u32,
     pub(crate) vertices: Vertices,
     pub(crate) references: References,
     pub(crate) screen: Screen,
@@ -190,12 +196,13 @@ pub(crate) struct Memory {
 impl Memory {
     pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &TilesDesc, output: Output) -> Result<Self> {
         let caps = backend.caps();
-        let bytes = desc.max_reference_bytes.min(TilesDesc::MAX_REFERENCE_BYTES);
-        let bytes = bytes.min(caps.max_storage_binding_bytes).min(caps.max_buffer_bytes);
-        let most_references = (bytes / References::BYTES).max(1) as u32;
+        let bytes = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
+        let reference_bytes = desc.max_reference_bytes.min(TilesDesc::MAX_REFERENCE_BYTES).min(bytes);
+        let most_references = (reference_bytes / References::BYTES).max(1) as u32;
         Ok(Self {
             most_references,
-            vertices: Vertices::new(backend, 0)?,
+            most_vertices: (bytes / Vertices::BYTES).min(MAX_VERTICES) as u32,
+            vertices: Vertices::new(backend, LEAST_VERTICES)?,
             references: References::new(backend, most_references.min(LEAST_REFERENCES))?,
             screen: Screen::new(backend, size, LEAST_SLOTS, output)?,
             grids: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_grids", GRIDS_BYTES))?,
@@ -220,12 +227,11 @@ impl Memory {
         Ok(())
     }
 
-    /// Makes room for so many references, for more than are allowed in rounds, for tiles, and for `vertices`.
+    /// Makes room for so many references, for more than are allowed in rounds, for tiles, and for vertices.
     pub(crate) fn grow(
         &mut self,
         backend: &mut dyn Backend,
-        Wanted { kept: wanted, tiles }: Wanted,
-        vertices: u64,
+        Wanted { kept: wanted, tiles, vertices }: Wanted,
     ) -> Result<()> {
         let slots = tiles.min(tile_count(self.screen.size).into()) as u32;
         let more = |slots| self.screen.resolved.more_colors(backend, slots);
@@ -233,6 +239,7 @@ impl Memory {
         let count = wanted.min(u64::from(self.most_references)) as u32;
         let more = |count| References::new(backend, count);
         let references = (count > self.references.count).then_some(count).map(more).transpose()?;
+        let vertices = vertices.min(self.most_vertices.into()) as u32;
         if vertices > self.vertices.count {
             let vertices = Vertices::new(backend, vertices)?;
             self.replace_vertices(backend, vertices);
@@ -246,23 +253,20 @@ impl Memory {
             self.screen.replace_colors(backend, colors, slots);
         }
         if wanted > u64::from(self.references.covered()) {
-            let rounds = wanted.div_ceil(u64::from(self.references.half())).min(u64::from(MAX_ROUNDS)) as u32;
-            self.references.rounds = self.references.rounds.max(rounds);
+            self.references.rounds = self.references.rounds.max(self.rounds_for(wanted));
         }
         Ok(())
     }
 
     fn replace_vertices(&mut self, backend: &mut dyn Backend, vertices: Vertices) {
-        let old = std::mem::replace(&mut self.vertices, vertices);
-        [old.points, old.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        backend.destroy(std::mem::replace(&mut self.vertices, vertices).buffer.into());
     }
 
     /// Gives back what is much more than is needed.
     pub(crate) fn shrink(
         &mut self,
         backend: &mut dyn Backend,
-        Wanted { kept: references, tiles }: Wanted,
-        vertices: u64,
+        Wanted { kept: references, tiles, vertices }: Wanted,
     ) -> Result<()> {
         if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into())) {
             let slots = with_headroom(tiles).max(LEAST_SLOTS.into()).min(tile_count(self.screen.size).into()) as u32;
@@ -273,16 +277,33 @@ impl Memory {
         let count = wanted.min(self.most_references.into()) as u32;
         let shrinks = count < self.references.count && is_surplus(self.references.count.into(), references);
         let smaller = if shrinks { Some(References::new(backend, count)?) } else { None };
-        if is_surplus(self.vertices.count, vertices) {
-            let smaller = Vertices::new(backend, vertices)?;
+        if is_surplus(self.vertices.count.into(), vertices.max(LEAST_VERTICES.into())) {
+            let count = with_headroom(vertices).max(LEAST_VERTICES.into());
+            let smaller = Vertices::new(backend, count.min(self.most_vertices.into()) as u32)?;
             self.replace_vertices(backend, smaller);
         }
         if let Some(smaller) = smaller {
             backend.destroy(std::mem::replace(&mut self.references, smaller).buffer.into());
-        } else if self.references.rounds > 1 && wanted <= u64::from(self.references.count) {
-            self.references.rounds = 1;
         }
         Ok(())
+    }
+
+    /// Rounds in which so many references have room.
+    fn rounds_for(&self, wanted: u64) -> u32 {
+        if wanted <= u64::from(self.references.count) {
+            return 1;
+        }
+        wanted.div_ceil(u64::from(self.references.half())).min(u64::from(MAX_ROUNDS)) as u32
+    }
+
+    /// Whether so many references take fewer rounds than there are.
+    pub(crate) fn has_rounds_to_spare(&self, references: u64) -> bool {
+        self.rounds_for(with_headroom(references)) < self.references.rounds
+    }
+
+    /// As few rounds as so many references take.
+    pub(crate) fn spare_rounds(&mut self, references: u64) {
+        self.references.rounds = self.rounds_for(with_headroom(references));
     }
 
     pub(crate) fn bytes(&self) -> u64 {
@@ -302,8 +323,7 @@ impl Memory {
         self.screen.destroy(backend);
         self.counters.destroy(backend);
         self.uniforms.destroy(backend);
-        let Vertices { points, paints, .. } = self.vertices;
-        [points, paints, self.references.buffer, self.grids, self.grids_again]
+        [self.vertices.buffer, self.references.buffer, self.grids, self.grids_again]
             .into_iter()
             .for_each(|buffer| backend.destroy(buffer.into()));
     }
@@ -311,6 +331,11 @@ impl Memory {
     /// What the kernels of a view are given: for counting, or for a round.
     pub(crate) fn uniform(&self, view: usize, round: Option<u32>) -> Binding {
         self.uniforms.binding(view * UNIFORMS_OF_A_VIEW + round.map_or(0, |round| 1 + round as usize))
+    }
+
+    /// The groups of `tile_bin`.
+    pub(crate) fn bin_grid(&self, draws: &[SectionDraw]) -> Grid {
+        bin_grid(drawn_vertices(draws).min(self.vertices.count.into()) as u32)
     }
 
     /// The groups of `tile_blend`.
