@@ -9,8 +9,8 @@ use crate::resolved::{TILE, tile_count};
 use crate::strands::SectionDraw;
 
 /// References to a segment within a tile, one for every second slice of depth that it touches, in the mean: at most 1.2 of five grooms at three
-/// distances, and a little for the tiles that turns reach into beyond their joints.
-const REFERENCES_OF_A_TILE: f64 = 1.26;
+/// distances, a little for the tiles that turns reach into beyond their joints, and more for short segments that all happen to lie across borders of tiles.
+const REFERENCES_OF_A_TILE: f64 = 1.37;
 
 /// Fragments that a view of sections makes, from the samples of their rest poses, what is hidden behind meshes included.
 pub(crate) fn fragments(view: &View, draws: &[SectionDraw]) -> f64 {
