@@ -214,7 +214,7 @@ pub(crate) fn test() -> Result<(), String> {
     run(cargo(&["test", "--workspace", "--quiet", "--no-fail-fast"]).env("TRESSFX_SHADER_COMPILERS", "required"))?;
     // Tests that read real grooms are ignored unless the grooms are there.
     if std::env::var_os("TRESSFX_ASSETS").is_some() {
-        step(&["test", "--workspace", "--tests", "--quiet", "--", "--ignored"])?;
+        step(&["test", "--workspace", "--tests", "--quiet", "--no-fail-fast", "--", "--ignored"])?;
     }
     println!("cargo doc --workspace --no-deps");
     run(cargo(&["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "--deny warnings"))
