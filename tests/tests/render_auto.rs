@@ -164,10 +164,10 @@ fn more_vertices_than_tiles_can_draw_are_for_lists_at_once() {
         renderer.grow_to_measured(&mut backend, &dense).unwrap();
         renderer.uses_tiles()
     };
-    // There is room for 32768 vertices.
+    // There is room for 65536 vertices.
     for round in 0..2 {
         let last = (0..60).map(|_| frame(1)).last();
         assert_eq!(last, Some(true), "dense hair is for tiles, round {round}");
-        assert!((0..40).all(|_| !frame(2)), "48000 vertices, round {round}");
+        assert!((0..40).all(|_| !frame(3)), "72000 vertices, round {round}");
     }
 }

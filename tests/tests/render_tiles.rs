@@ -147,6 +147,9 @@ fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, 
     tickets.map(|ticket| bytemuck::pod_collect_to_vec(&screen.backend.read(ticket).ready().expect("it has run")))
 }
 
+/// The tilt where a strand begins or ends.
+const ROUND: f32 = 1e9;
+
 /// What tiles keep of a vertex.
 struct Kept {
     /// Its pixel, nearness and radius.
@@ -157,9 +160,29 @@ struct Kept {
 }
 
 impl Kept {
-    fn new(words: &[u32]) -> Self {
-        let point = DVec4::from_array([0, 1, 2, 3].map(|axis| f64::from(f32::from_bits(words[axis]))));
-        Self { point, color: color(&words[4..]), tilt: f32::from_bits(words[6]), leads_on: words[7] == 1 }
+    /// From its words of `vertices` and of `paints`.
+    fn new(words: &[u32], paint: &[u32]) -> Self {
+        let point = [0, 1, 2].map(|axis| f64::from(f32::from_bits(words[axis])));
+        let radius = f32::from_bits(((words[3] >> 14) << 11) + 0x2b80_0000);
+        let (size, is_left) = ((words[3] >> 2) & 0x7ff, (words[3] >> 13) & 1 == 1);
+        let tilt = match size {
+            0 => 0.0,
+            0x7ff => ROUND,
+            _ => f32::from_bits(((size - 1) << 17) + 0x3580_0000),
+        };
+        assert_eq!(words[3] & 2, 0, "it is not beyond the near plane");
+        Self {
+            point: DVec4::new(point[0], point[1], point[2], radius.into()),
+            color: color(paint),
+            tilt: if is_left { -tilt } else { tilt },
+            leads_on: words[3] & 1 == 1,
+        }
+    }
+
+    /// So many of them.
+    fn all(words: &[u32], paints: &[u32], count: u32) -> Vec<Self> {
+        let both = words.chunks(4).zip(paints.chunks(2)).take(count as usize);
+        both.map(|(words, paint)| Self::new(words, paint)).collect()
     }
 }
 
@@ -184,7 +207,8 @@ fn on_screen(screen: &Screen, groom: &Groom, vertex: usize) -> DVec4 {
 fn sources(screen: &Screen, groom: &Groom, kept: &[Kept]) -> Vec<usize> {
     let all: Vec<DVec4> = (0..groom.positions.len()).map(|vertex| on_screen(screen, groom, vertex)).collect();
     let near = |of: &Kept, vertex: usize| (all[vertex] - of.point).abs();
-    let is_it = |of: &Kept, vertex: usize| near(of, vertex).cmple(DVec4::new(1e-4, 1e-4, 1e-6, 1e-8)).all();
+    let is_it =
+        |of: &Kept, vertex: usize| near(of, vertex).cmple(DVec4::new(1e-4, 1e-4, 1e-6, 1e-3 * of.point.w)).all();
     let source = |of: &Kept| (0..all.len()).find(|&vertex| is_it(of, vertex)).expect("a vertex of the groom");
     kept.iter().map(source).collect()
 }
@@ -200,9 +224,9 @@ fn tile_points_keeps_what_may_be_seen() {
         let (label, all) = ("hair.render.tile_points", groom.positions.len() as u64);
         let counts = read(&mut screen, &[&groom], [("hair.render.tile_bin", "state", 8)]);
         let count = u64::from(counts[0][7]);
-        let [words, colors] =
-            read(&mut screen, &[&groom], [(label, "vertices", 8 * count), (label, "colors", 2 * all)]);
-        let kept: Vec<Kept> = words.chunks(8).map(Kept::new).collect();
+        let names = [(label, "vertices", 4 * count), (label, "paints", 2 * count), (label, "colors", 2 * all)];
+        let [words, paints, colors] = read(&mut screen, &[&groom], names);
+        let kept = Kept::all(&words, &paints, counts[0][7]);
         let sources = sources(&screen, &groom, &kept);
         let own: Vec<DVec4> = colors.chunks(2).map(color).collect();
         let (stride, last) = (strands as usize, groom.positions.len() - 1);
@@ -216,7 +240,7 @@ fn tile_points_keeps_what_may_be_seen() {
                 "{found}"
             );
             let is_end = source < stride || source + stride > last || source == 2 + stride;
-            assert!(if is_end { kept.tilt == 1e9 } else { kept.tilt.abs() < 0.8 }, "vertex {source}: {}", kept.tilt);
+            assert!(if is_end { kept.tilt == ROUND } else { kept.tilt.abs() < 0.8 }, "vertex {source}: {}", kept.tilt);
             if kept.leads_on {
                 assert_eq!(sources[i + 1], source + stride, "the next vertex is the next one of the strand");
                 assert!(segments.insert(source), "a segment is kept once");
@@ -303,11 +327,12 @@ fn tile_bin_refers_to_what_touches_a_tile_and_tile_alloc_gives_each_tile_a_place
         ("hair.render.tile_bin", "references", u64::from(1u32 << 16)),
         ("hair.render.tile_alloc", "queue", 12 + 8 * 96),
         ("hair.render.tile_alloc", "infos", 6 * 96),
-        ("hair.render.tile_points", "vertices", 8 * 4800),
+        ("hair.render.tile_points", "vertices", 4 * 4800),
+        ("hair.render.tile_points", "paints", 2 * 4800),
         ("hair.render.tile_points", "state", 8),
     ];
-    let [bins, references, queue, infos, words, counters] = read(&mut screen, &[&groom], names);
-    let kept: Vec<Kept> = words.chunks(8).take(counters[7] as usize).map(Kept::new).collect();
+    let [bins, references, queue, infos, words, paints, counters] = read(&mut screen, &[&groom], names);
+    let kept = Kept::all(&words, &paints, counters[7]);
     let sources = sources(&screen, &groom, &kept);
     let wanted = queue[0];
     let (sizes, tiles) = (&queue[4..12], &queue[12..]);
@@ -383,7 +408,9 @@ fn tile_blend_makes_each_fragment_once() {
         for meshes in [&[][..], &[&roof()]] {
             let (all, found) = (lists.scene(meshes, &[&groom]).counters, screen.scene(meshes, &[&groom]).counters);
             assert_eq!(all.dropped, 0);
-            assert_eq!((found.fragments, found.pixels_with_hair), (all.fragments, all.pixels_with_hair));
+            assert_eq!(found.pixels_with_hair, all.pixels_with_hair);
+            // Tiles round radii to a part in 8,000: now and then the faintest fragment there is comes or goes.
+            assert!(found.fragments.abs_diff(all.fragments) <= all.fragments / 50_000, "{found:?}, {all:?}");
         }
     }
 }

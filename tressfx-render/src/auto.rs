@@ -150,7 +150,7 @@ impl Auto {
             desc: *desc,
             size,
             output,
-            most_vertices: MAX_VERTICES.min(bytes / Vertices::BYTES),
+            most_vertices: MAX_VERTICES.min(bytes / Vertices::POINT_BYTES),
             tiles_can_draw: false,
             lists: Ppll::new(backend, &desc.lists, size, output)?,
             tiles: None,

@@ -354,7 +354,7 @@ impl TechniqueInstance for Tiles {
 /// Whether a device can draw hair on a screen of this size.
 fn check(backend: &dyn Backend, size: [u32; 2], output: Output) -> Result<()> {
     let needs = [
-        Need::StorageBuffers(7),
+        Need::StorageBuffers(8),
         Need::TextureEdge(size[0].max(size[1])),
         Need::StorageBindingBytes(memory::largest_binding(size, output)),
     ];

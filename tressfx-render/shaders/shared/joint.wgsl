@@ -9,6 +9,11 @@ const ROUND: f32 = 1e9;
 // At a larger tilt a segment ends round, where a strip up to the bisector would leave a spike.
 const SHARP: f32 = 0.42;
 const LARGEST: f32 = 1e3;
+// Below this it is 0. It has 6 bits behind its highest one, so that 12 bits can store it: see `pack_tilt`.
+const LEAST: f32 = 9.5367431640625e-7;
+const TILT_CUT: u32 = 17u;
+const TILT_SIGN: u32 = 0x800u;
+const PACKED_ROUND: u32 = 0x7ffu;
 
 // How high the surface of a fibre rises before its axis in the mean, in radii.
 const MEAN_RISE: f32 = 0.785398;
@@ -17,7 +22,31 @@ const MEAN_RISE: f32 = 0.785398;
 fn tilt_of(before: vec2<f32>, after: vec2<f32>) -> f32 {
     let lengths = sqrt(dot(before, before) * dot(after, after));
     let turn = before.x * after.y - before.y * after.x;
-    return clamp(turn / max(lengths + dot(before, after), 1e-30), -LARGEST, LARGEST);
+    return rounded_tilt(clamp(turn / max(lengths + dot(before, after), 1e-30), -LARGEST, LARGEST));
+}
+
+// All techniques divide the pixels of a strand alike, whether they store the tilt or not.
+fn rounded_tilt(tilt: f32) -> f32 {
+    let bits = ((bitcast<u32>(tilt) + (1u << (TILT_CUT - 1u))) >> TILT_CUT) << TILT_CUT;
+    return select(bitcast<f32>(bits), 0.0, abs(tilt) < LEAST);
+}
+
+// A rounded tilt, or `ROUND`, in 12 bits.
+fn pack_tilt(tilt: f32) -> u32 {
+    if tilt == 0.0 || tilt == ROUND {
+        return select(0u, PACKED_ROUND, tilt == ROUND);
+    }
+    let size = ((bitcast<u32>(abs(tilt)) - bitcast<u32>(LEAST)) >> TILT_CUT) + 1u;
+    return size | select(0u, TILT_SIGN, tilt < 0.0);
+}
+
+fn unpack_tilt(packed: u32) -> f32 {
+    let size = packed & ~TILT_SIGN;
+    if size == 0u || size == PACKED_ROUND {
+        return select(0.0, ROUND, size == PACKED_ROUND);
+    }
+    let tilt = bitcast<f32>(((size - 1u) << TILT_CUT) + bitcast<u32>(LEAST));
+    return select(tilt, -tilt, packed != size);
 }
 
 // The eye does not meet the axis of a fibre but its surface, which is nearer. Along a fibre that leads towards the eye that is

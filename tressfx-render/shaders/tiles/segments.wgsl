@@ -1,60 +1,96 @@
 // The segments of all sections on the screen: what `hair.render.tile_points` has left.
 
+import package::joint::{pack_tilt, unpack_tilt};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, project, scale_of, width_scale};
 import package::screen::view;
 import package::tiles::distance_of;
 
 struct Vertex {
-    // Its pixel, nearness, and radius / w. Where it is not beyond the near plane: its point in the space of the eye, and its radius
-    // below 0.
-    point: vec4<f32>,
-    // Colour and opacity of the surface there, as four half floats.
-    color: vec2<u32>,
+    // Its pixel and nearness; where it is not beyond the near plane, its point in the space of the eye.
+    point: vec3<f32>,
+    // Radius / w, or there its radius.
+    radius: f32,
     // How the strand goes on, see `joint`.
     tilt: f32,
-    // 1 where the segment to the next vertex may be seen, else 0.
-    leads_on: u32,
+    is_beyond: bool,
+    // Whether the segment to the next vertex may be seen.
+    leads_on: bool,
 }
 
-// Those that may be seen of a strand follow each other.
-@group(0) @binding(2) var<storage, read> vertices: array<Vertex>;
+// Those that may be seen of a strand follow each other: `point`, and what `pack_rest` makes of the rest.
+@group(0) @binding(2) var<storage, read> vertices: array<vec4<u32>>;
+// Colour and opacity of the surface at each of them, as four half floats.
+@group(0) @binding(3) var<storage, read> paints: array<vec2<u32>>;
+
+// A word of a vertex, from the lowest bit: `leads_on`, `is_beyond`, 12 bits for the tilt, and of the radius 6 bits of the exponent and 12
+// behind it.
+const LEADS_ON: u32 = 1u;
+const IS_BEYOND: u32 = 2u;
+const TILT_SHIFT: u32 = 2u;
+const TILT_BITS: u32 = 12u;
+const RADIUS_SHIFT: u32 = 14u;
+// The bits of a radius that are not stored.
+const RADIUS_CUT: u32 = 11u;
+// 1e-12 and 1.6e7: radii are stored between them.
+const LEAST_RADIUS: u32 = 0x2b800000u;
+const MOST_RADIUS: u32 = 0x4b7ff800u;
+
+fn pack_rest(vertex: Vertex) -> u32 {
+    let flags = select(0u, LEADS_ON, vertex.leads_on) | select(0u, IS_BEYOND, vertex.is_beyond);
+    let bits = clamp(bitcast<u32>(vertex.radius), LEAST_RADIUS, MOST_RADIUS) - LEAST_RADIUS;
+    let radius = (bits + (1u << (RADIUS_CUT - 1u))) >> RADIUS_CUT;
+    return flags | (pack_tilt(vertex.tilt) << TILT_SHIFT) | (radius << RADIUS_SHIFT);
+}
+
+fn unpack_vertex(packed: vec4<u32>) -> Vertex {
+    let rest = packed.w;
+    let tilt = unpack_tilt(extractBits(rest, TILT_SHIFT, TILT_BITS));
+    let radius = bitcast<f32>(((rest >> RADIUS_SHIFT) << RADIUS_CUT) + LEAST_RADIUS);
+    return Vertex(bitcast<vec3<f32>>(packed.xyz), radius, tilt, (rest & IS_BEYOND) != 0u, (rest & LEADS_ON) != 0u);
+}
+
+fn leads_on(vertex: u32) -> bool {
+    return (vertices[vertex].w & LEADS_ON) != 0u;
+}
 
 // Coordinates in pixels up to which a ribbon need not be cut to the screen.
 const LARGEST_PIXEL: f32 = 32768.0;
 
 // A vertex before the eye again.
-fn end_of(point: vec4<f32>) -> End {
-    if point.w < 0.0 {
-        return End(point.xyz, -point.w);
+fn end_of(vertex: Vertex) -> End {
+    let point = vertex.point;
+    if vertex.is_beyond {
+        return End(point, vertex.radius);
     }
     let scale = scale_of(view.lens, point.zz).x;
     let right = (point.x - view.lens.center.x) / (view.lens.focal.x * scale);
     let up = (view.lens.center.y - point.y - view.lens.skew * scale * right) / (view.lens.focal.y * scale);
-    return End(vec3(right, up, -distance_of(point.z)), point.w / scale);
+    return End(vec3(right, up, -distance_of(point.z)), vertex.radius / scale);
 }
 
 // The segment from a vertex on.
 fn ribbon_of(start: u32) -> Ribbon {
-    let a = vertices[start].point;
-    let b = vertices[start + 1u].point;
-    if !is_sound(a.xyz) || !is_sound(b.xyz) {
+    let a = unpack_vertex(vertices[start]);
+    let b = unpack_vertex(vertices[start + 1u]);
+    if !is_sound(a.point) || !is_sound(b.point) {
         return Ribbon();
     }
-    let tilt = vec2(vertices[start].tilt, vertices[start + 1u].tilt);
-    if min(a.w, b.w) >= 0.0 && all(max(abs(a.xy), abs(b.xy)) < vec2(LARGEST_PIXEL)) {
-        let nearness = vec2(a.z, b.z);
-        let half_width = vec2(a.w, b.w) * width_scale(view.lens, b.xy - a.xy);
-        return Ribbon(a.xy, b.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), tilt, true);
+    let tilt = vec2(a.tilt, b.tilt);
+    let is_beyond = vec2(a.is_beyond, b.is_beyond);
+    if !any(is_beyond) && all(max(abs(a.point.xy), abs(b.point.xy)) < vec2(LARGEST_PIXEL)) {
+        let nearness = vec2(a.point.z, b.point.z);
+        let half_width = vec2(a.radius, b.radius) * width_scale(view.lens, b.point.xy - a.point.xy);
+        return Ribbon(a.point.xy, b.point.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), tilt, true);
     }
     var ribbon = project(end_of(a), end_of(b), view.lens);
-    ribbon.tilt = select(tilt, vec2(0.0), vec2(a.w < 0.0, b.w < 0.0));
+    ribbon.tilt = select(tilt, vec2(0.0), is_beyond);
     return clip(ribbon, view.lens, vec2<f32>(view.size), margin_of(ribbon.half_width));
 }
 
 fn color_of(vertex: u32) -> vec4<f32> {
-    let color = vertices[vertex].color;
-    return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
+    let paint = paints[vertex];
+    return vec4(unpack2x16float(paint.x), unpack2x16float(paint.y));
 }
 
 fn paint_of(start: u32) -> Paint {

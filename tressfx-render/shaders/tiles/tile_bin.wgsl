@@ -7,7 +7,7 @@ import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::view;
-import package::segments::{ribbon_of, vertices};
+import package::segments::{leads_on, ribbon_of};
 import package::tile::TILE;
 import package::tiles::{DISTANCE_MARGIN, FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, distance_of, slice_of, tile_columns, tile_count, tiles};
 
@@ -115,7 +115,7 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
 fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
             @builtin(local_invocation_index) lane: u32) {
     let i = thread_index(group, groups, lane);
-    if i >= min(atomicLoad(&state.counters.vertices), tiles.vertices) || vertices[i].leads_on == 0u {
+    if i >= min(atomicLoad(&state.counters.vertices), tiles.vertices) || !leads_on(i) {
         return;
     }
     let ribbon = ribbon_of(i);

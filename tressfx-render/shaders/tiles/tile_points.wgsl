@@ -5,14 +5,15 @@
 import package::joint::ROUND;
 import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
-import package::segments::{LARGEST_PIXEL, Vertex};
+import package::segments::{LARGEST_PIXEL, Vertex, pack_rest};
 import package::strands::{Strand, bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, strand_at, tilt_between};
 import package::tile::TILE;
 import package::tiles::{DISTANCE_MARGIN, SharedTileInfo, ViewState, nearness_at, tile_columns, tiles};
 
-@group(0) @binding(6) var<storage, read_write> vertices: array<Vertex>;
-@group(0) @binding(7) var<storage, read_write> state: ViewState;
-@group(0) @binding(8) var<storage, read_write> infos: array<SharedTileInfo>;
+@group(0) @binding(6) var<storage, read_write> vertices: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
+@group(0) @binding(8) var<storage, read_write> state: ViewState;
+@group(0) @binding(9) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const LANES: u32 = 256u;
 // A piece of a strand has at most so many segments: a bit each, and one for the vertex at its end.
@@ -51,7 +52,8 @@ fn pieces() -> Pieces {
     return Pieces(count, own, LANES / (own + 1u));
 }
 
-// A vertex as `segments` reads it.
+// Pixel, nearness and radius / w of a vertex; where it is not beyond the near plane, its point in the space of the eye and its radius
+// below 0.
 fn point_of(end: End) -> vec4<f32> {
     let distance = -end.point.z;
     if distance <= view.lens.near {
@@ -69,12 +71,14 @@ fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
     return point_of(end_at(strand, vertex));
 }
 
-fn vertex_at(strand: Strand, vertex: u32, point: vec4<f32>, leads_on: bool) -> Vertex {
+fn store(place: u32, strand: Strand, vertex: u32, point: vec4<f32>, leads_on: bool) {
     let beside = neighbours_of(strand, vertex);
     let bend = bend_at(strand, vertex, beside);
     let paint = paint_between(bend, strand, vertex, beside);
     let tilt = select(tilt_between(bend), ROUND, any(beside == vec2(vertex)));
-    return Vertex(point, vec2(pack2x16float(paint.rg), pack2x16float(paint.ba)), tilt, u32(leads_on));
+    let rest = pack_rest(Vertex(point.xyz, abs(point.w), tilt, point.w < 0.0, leads_on));
+    vertices[place] = vec4(bitcast<vec3<u32>>(point.xyz), rest);
+    paints[place] = vec2(pack2x16float(paint.rg), pack2x16float(paint.ba));
 }
 
 fn note_nearest(point: vec4<f32>) {
@@ -183,7 +187,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     let is_seen = ((atomicLoad(&seen[own]) >> own_vertex) & 1u) == 1u;
     let leads_on = is_seen && place + 1u < tiles.vertices;
     if place < tiles.vertices {
-        vertices[place] = vertex_at(strand, vertex, point, leads_on);
+        store(place, strand, vertex, point, leads_on);
     }
     if is_seen != leads_on {
         atomicAdd(&state.counters.dropped, 1u);

@@ -34,7 +34,7 @@ impl Joint {
         let [before, middle, after] = points.map(|point| projection.pixel(&point));
         let (own, next) = (middle - before, after - middle);
         let ahead = own.length() * next.length() + own.dot(next);
-        Self::Turn((own.perp_dot(next) / ahead.max(1e-30)).clamp(-1e3, 1e3))
+        Self::Turn(rounded_tilt((own.perp_dot(next) / ahead.max(1e-30)).clamp(-1e3, 1e3)))
     }
 
     pub(super) fn is_sharp(self) -> bool {
@@ -58,6 +58,15 @@ impl Joint {
             Self::Turn(tilt) => Some(at.x + side * tilt * at.y >= 0.0),
         }
     }
+}
+
+/// A tilt has 6 bits behind its highest one, and is 0 below 2^-20.
+fn rounded_tilt(tilt: f64) -> f64 {
+    if tilt.abs() < 2f64.powi(-20) {
+        return 0.0;
+    }
+    let last = 2f64.powi(tilt.abs().log2().floor() as i32 - 6);
+    (tilt / last).round() * last
 }
 
 /// Colour and opacity of the surface that is seen at a vertex: those of the axis where the surface is as high as in the mean.

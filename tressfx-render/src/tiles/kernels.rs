@@ -153,7 +153,8 @@ impl Kernels {
             ("colors", strands.colors.into()),
             ("thickness", strands.thickness().into()),
             ("tiles", memory.uniform(view.index, None)),
-            ("vertices", memory.vertices.buffer.into()),
+            ("vertices", memory.vertices.points.into()),
+            ("paints", memory.vertices.paints.into()),
             ("state", memory.counters.of(view.index).into()),
             ("infos", memory.screen.infos.into()),
         ];
@@ -190,7 +191,7 @@ impl Kernels {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, round)),
-            ("vertices", memory.vertices.buffer.into()),
+            ("vertices", memory.vertices.points.into()),
             ("state", memory.counters.of(view.index).into()),
             ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
@@ -246,7 +247,8 @@ impl Kernels {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, Some(round))),
-            ("vertices", memory.vertices.buffer.into()),
+            ("vertices", memory.vertices.points.into()),
+            ("paints", memory.vertices.paints.into()),
             ("state", memory.counters.of(view.index).into()),
             ("scene_depth", scene_depth.into()),
             ("bins", memory.screen.bins.into()),

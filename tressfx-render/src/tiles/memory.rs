@@ -61,22 +61,31 @@ const INFO_BYTES: u64 = 24;
 /// Vertices of all sections that may be seen.
 #[derive(Debug)]
 pub(crate) struct Vertices {
-    /// `Vertex` of `segments.wgsl`.
-    pub(crate) buffer: BufferId,
+    /// Four words a vertex: see `segments.wgsl`.
+    pub(crate) points: BufferId,
+    /// Colour and opacity as four half floats a vertex.
+    pub(crate) paints: BufferId,
     /// How many there is room for.
     pub(crate) count: u32,
 }
 
 impl Vertices {
-    /// Bytes of a vertex.
-    pub(crate) const BYTES: u64 = 32;
+    /// Bytes of a vertex in the larger one of the two buffers.
+    pub(crate) const POINT_BYTES: u64 = 16;
+    const PAINT_BYTES: u64 = 8;
 
     fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
-        Ok(Self { buffer: storage(backend, "hair.render.vertices", Self::BYTES * u64::from(count))?, count })
+        let points = storage(backend, "hair.render.vertices", Self::POINT_BYTES * u64::from(count))?;
+        let paints = storage(backend, "hair.render.paints", Self::PAINT_BYTES * u64::from(count))?;
+        Ok(Self { points, paints, count })
     }
 
     fn bytes(&self) -> u64 {
-        Self::BYTES * u64::from(self.count)
+        (Self::POINT_BYTES + Self::PAINT_BYTES) * u64::from(self.count)
+    }
+
+    fn destroy(self, backend: &mut dyn Backend) {
+        [self.points, self.paints].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
@@ -201,7 +210,7 @@ impl Memory {
         let most_references = (reference_bytes / References::BYTES).max(1) as u32;
         Ok(Self {
             most_references,
-            most_vertices: (bytes / Vertices::BYTES).min(MAX_VERTICES) as u32,
+            most_vertices: (bytes / Vertices::POINT_BYTES).min(MAX_VERTICES) as u32,
             vertices: Vertices::new(backend, LEAST_VERTICES)?,
             references: References::new(backend, most_references.min(LEAST_REFERENCES))?,
             screen: Screen::new(backend, size, LEAST_SLOTS, output)?,
@@ -259,7 +268,7 @@ impl Memory {
     }
 
     fn replace_vertices(&mut self, backend: &mut dyn Backend, vertices: Vertices) {
-        backend.destroy(std::mem::replace(&mut self.vertices, vertices).buffer.into());
+        std::mem::replace(&mut self.vertices, vertices).destroy(backend);
     }
 
     /// Gives back what is much more than is needed.
@@ -323,7 +332,8 @@ impl Memory {
         self.screen.destroy(backend);
         self.counters.destroy(backend);
         self.uniforms.destroy(backend);
-        [self.vertices.buffer, self.references.buffer, self.grids, self.grids_again]
+        self.vertices.destroy(backend);
+        [self.references.buffer, self.grids, self.grids_again]
             .into_iter()
             .for_each(|buffer| backend.destroy(buffer.into()));
     }
