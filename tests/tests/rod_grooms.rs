@@ -104,6 +104,44 @@ fn frame_rates_hardly_matter() {
     }
 }
 
+/// Tips in the third second of a shake that does not end, 30 times in it; the head moves, or all roots do.
+fn steady_tips(strands: &Strands, fps: u32, own_roots: bool) -> Vec<DVec3> {
+    let desc = SectionDesc::new(strands, SimParams::default()).with_solver(Solver::Direct);
+    let mut simulation = Simulation::new(&[if own_roots { desc.with_own_roots() } else { desc }]).unwrap();
+    let (vertices, dt) = (strands.vertices as usize, 1.0 / f64::from(fps));
+    let mut tips = Vec::new();
+    for frame in 0..=3 * fps {
+        // A whole second has whole swings.
+        let seconds = f64::from(frame % fps) * dt;
+        let input = shaken(strands, seconds, if frame == 0 { 0.0 } else { dt });
+        if own_roots {
+            simulation.set_roots(0, &vec![input.head; strands.guides as usize]);
+        }
+        let head = if own_roots { Pose::IDENTITY } else { input.head };
+        simulation.step(&StepInput { head, ..input }).unwrap();
+        if frame > 2 * fps && frame % (fps / 30) == 0 {
+            let positions = simulation.positions(0);
+            let strand = positions.chunks(vertices).zip(lengths(strands));
+            tips.extend(strand.map(|(strand, length)| (strand[vertices - 1] - strand[0]) / length));
+        }
+    }
+    tips
+}
+
+#[test]
+fn roots_that_are_shaken_by_a_body_are_as_true_as_those_on_a_head() {
+    for name in ["straight", "curly", "wavy", "mohawk"] {
+        let Some(strands) = groom(name, 12) else { continue };
+        // All that is simulated is known.
+        let exact = steady_tips(&strands, 120, false);
+        for (fps, allowed) in [(30, 0.025), (60, 0.005)] {
+            let [head, roots] = [false, true].map(|own_roots| rms(&steady_tips(&strands, fps, own_roots), &exact));
+            println!("{name}, {fps} frames a second: {head:.5} of length on a head, {roots:.5} on a body");
+            assert!(roots < allowed && (roots - head).abs() < 0.1 * head, "{name}, {fps}: {head} {roots}");
+        }
+    }
+}
+
 /// The most bends in a row that each go back on the one before.
 fn alternating(strand: &[DVec3]) -> usize {
     let edges: Vec<DVec3> = strand.windows(2).map(|edge| (edge[1] - edge[0]).normalize_or_zero()).collect();

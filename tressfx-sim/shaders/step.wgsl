@@ -17,6 +17,11 @@ struct Step {
     max_displacement: f32,
     /// Displacement by the wind from the four corners of its cone, across an edge; for the solver `Direct` its velocity, units/s.
     wind: array<vec4<f32>, 4>,
+    /// How far roots are away from the straight line between where they are at the ends of the frame: that much of the way to its end, and
+    /// of those to the starts of the last frame and of the one before it.
+    root_bend: vec3<f32>,
+    /// The farthest that this may lead away from the line.
+    root_slack: f32,
     global_stiffness: f32,
     /// Share of the strand's vertices, from the root, that the global shape reaches.
     global_range: f32,
@@ -35,7 +40,7 @@ struct Step {
     strands: u32,
     /// Vertices of each strand.
     vertices: u32,
-    /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
+    /// The share of the frame that has passed at the end of the sub-step.
     root_share: f32,
     /// The first capsule that the section collides with.
     first_capsule: u32,
@@ -59,7 +64,9 @@ struct Step {
     pull: f32,
     /// The most rounds of Newton's method.
     rounds: u32,
-    padding: vec2<f32>,
+    /// Which of the three places of a root is that at the start of the frame; those before it are the two before, in turns.
+    root_place: u32,
+    padding: f32,
 }
 
 @group(0) @binding(0) var<uniform> step: Step;

@@ -58,8 +58,8 @@ pub(crate) struct RodBuffers {
 pub(crate) struct RootBuffers {
     /// [`RootTransform`] at the end of the frame: what the caller gives.
     pub(crate) targets: BufferId,
-    /// [`RootTransform`] at the end of the last sub-step.
-    pub(crate) reached: BufferId,
+    /// [`RootTransform`] at the ends of the last three frames, in turns.
+    pub(crate) places: [BufferId; 3],
     /// With the head, now and one sub-step ago; four `vec4<f32>`.
     pub(crate) now: BufferId,
 }
@@ -163,12 +163,22 @@ impl RodBuffers {
 }
 
 impl RootBuffers {
+    /// Bytes of a [`RootTransform`].
+    const BYTES: u64 = 32;
+
     fn new(backend: &mut dyn Backend, guides: u32) -> Result<Self> {
+        let transforms = |backend: &mut dyn Backend, label| storage(backend, label, Self::BYTES, guides);
+        let place = |backend: &mut dyn Backend| transforms(backend, "hair.root_places");
         Ok(Self {
-            targets: storage(backend, "hair.root_targets", 32, guides)?,
-            reached: storage(backend, "hair.roots_reached", 32, guides)?,
+            targets: transforms(backend, "hair.root_targets")?,
+            places: [place(backend)?, place(backend)?, place(backend)?],
             now: storage(backend, "hair.roots", 64, guides)?,
         })
+    }
+
+    /// The frame ends: its end is the start of the next one, and has the place with this number.
+    pub(crate) fn end_frame(&self, list: &mut PassList, place: u32, guides: u32) {
+        list.copy(self.targets, self.places[place as usize], Self::BYTES * u64::from(guides));
     }
 }
 

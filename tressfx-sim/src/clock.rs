@@ -11,9 +11,9 @@ use tressfx_core::strands::Bounds;
 use tressfx_core::view::Pose;
 
 use crate::params::ParamError;
-use head_path::{EarlierFrame, HeadPath};
+use head_path::{END, EarlierFrame, HeadPath, bend};
 pub use params::ClockParams;
-pub use sub_step::{FramePlan, SubStep};
+pub use sub_step::{FramePlan, RootPath, SubStep};
 
 /// Cuts frames into sub-steps.
 #[derive(Clone, Debug)]
@@ -36,6 +36,8 @@ pub struct Clock {
     simulated_head: Pose,
     /// See [`Clock::pose`]: kept, since a groom that sleeps is asked for it in each frame.
     pose: Pose,
+    /// Lengths of the last frame and of the one before it, s, where roots were on one way in them.
+    root_frames: [Option<f64>; 2],
     /// Velocities of the corners of the bounds in the last frame.
     velocities: Option<[Vec3; 8]>,
     /// Sub-steps in a second.
@@ -44,7 +46,7 @@ pub struct Clock {
     still: Option<[f64; 2]>,
 }
 
-/// Frames whose lengths differ by more than this factor do not count as one motion, see [`Clock::path`].
+/// Frames whose lengths differ by more than this factor do not count as one motion.
 const MAX_LENGTH_RATIO: f64 = 2.0;
 /// A sub-step is simulated if no more than this share of its length is missing, so that rounding does not delay it to the
 /// next frame: 2 s have the same number of sub-steps at any frame rate.
@@ -67,6 +69,7 @@ impl Clock {
             last_sub_step,
             head: None,
             before: [None; 2],
+            root_frames: [None; 2],
             simulated_head: Pose::IDENTITY,
             pose: drawn(center, &Pose::IDENTITY, &Pose::IDENTITY),
             velocities: None,
@@ -116,6 +119,13 @@ impl Clock {
     /// Divides a frame of `dt` seconds, at whose end the head is at `head`, into sub-steps. Within the frame the head
     /// continues its motion of the last two frames.
     pub fn advance(&mut self, dt: f64, head: Pose) -> FramePlan {
+        let mut frame = self.advance_part(dt, head);
+        self.move_roots(dt.max(0.0), &mut frame);
+        frame
+    }
+
+    /// A frame, or a part of one, without the ways of roots.
+    fn advance_part(&mut self, dt: f64, head: Pose) -> FramePlan {
         self.settle();
         let teleported = self.head.is_some_and(|last| self.is_teleport(&last, &head));
         let start = if teleported { None } else { self.head };
@@ -150,7 +160,7 @@ impl Clock {
                 head_acceleration: acceleration,
                 heads: [self.simulated_head, pose],
                 shares: [share - if simulated > 0.0 { length / simulated } else { 0.0 }, share],
-                share_of_remaining_frame: (length / (simulated - into_frame + length)).min(1.0),
+                roots: RootPath::END,
             });
             self.simulated_head = pose;
             self.last_sub_step = length;
@@ -178,6 +188,7 @@ impl Clock {
         if count > 0 {
             self.last_sub_step = length;
         }
+        self.root_frames = if dropped == 0.0 { [Some(dt), self.root_frames[0]] } else { [None; 2] };
         if let Some([last, _]) = self.still.filter(|_| dt > 0.0 && dropped == 0.0) {
             self.still = Some([dt, last]);
         } else {
@@ -227,28 +238,43 @@ impl Clock {
         let parts = (poses.len() + 1) as f64;
         let mut frame = FramePlan::default();
         for (index, &pose) in poses.iter().chain([&head]).enumerate() {
-            let part = self.advance(dt / parts, pose);
+            let part = self.advance_part(dt / parts, pose);
             if part.reset.is_some() {
                 frame.sub_steps.clear();
                 frame.reset = part.reset;
             }
             frame.teleported |= part.teleported;
-            let (before, after) = (index as f64, parts - 1.0 - index as f64);
-            frame.sub_steps.extend(part.sub_steps.into_iter().map(|sub_step| SubStep {
-                shares: sub_step.shares.map(|share| (before + share) / parts),
-                share_of_remaining_frame: sub_step.length
-                    / (sub_step.length / sub_step.share_of_remaining_frame + after * dt / parts),
-                ..sub_step
-            }));
+            let before = index as f64;
+            frame.sub_steps.extend(
+                part.sub_steps.into_iter().map(|sub_step| SubStep {
+                    shares: sub_step.shares.map(|share| (before + share) / parts),
+                    ..sub_step
+                }),
+            );
         }
+        self.move_roots(dt, &mut frame);
         frame
+    }
+
+    /// Says where roots are at the ends of the sub-steps of a whole frame. They have only one way in it, however many poses of the head
+    /// there are. Where strands were reset in it, roots are where they are at its end.
+    fn move_roots(&mut self, dt: f64, frame: &mut FramePlan) {
+        let simulated = dt - frame.dropped;
+        let is_one_way = frame.reset.is_none() && frame.dropped == 0.0;
+        if frame.reset.is_none() {
+            let before = self.root_frames.map(|length| length.map(|length| length / simulated).filter(are_alike));
+            for sub_step in frame.sub_steps.iter_mut().filter(|sub_step| sub_step.shares[1] < END) {
+                let share = sub_step.shares[1].max(0.0);
+                sub_step.roots = RootPath { share, bend: bend(before, share), frame: simulated };
+            }
+        }
+        self.root_frames = if is_one_way { [Some(dt), self.root_frames[0]] } else { [None; 2] };
     }
 
     /// The path of the head in a frame of which `simulated` seconds are simulated.
     fn path(&self, simulated: f64, last: Pose, head: Pose) -> HeadPath {
         let before = self.before.map(|before| before.map(|(head, dt)| EarlierFrame { head, length: dt / simulated }));
-        let alike = |before: &EarlierFrame| (1.0 / MAX_LENGTH_RATIO..=MAX_LENGTH_RATIO).contains(&before.length);
-        HeadPath::new(before.map(|before| before.filter(alike)), last, head)
+        HeadPath::new(before.map(|before| before.filter(|before| are_alike(&before.length))), last, head)
     }
 
     /// The displacement of the groom's centre.
@@ -272,6 +298,11 @@ impl Clock {
         let before = self.velocities.replace(now).unwrap_or(now);
         now.iter().zip(before).map(|(now, before)| now.distance(before) / dt).fold(0.0, f32::max)
     }
+}
+
+/// Whether frames count as one motion, by the length of one over that of the other.
+fn are_alike(ratio: &f64) -> bool {
+    (1.0 / MAX_LENGTH_RATIO..=MAX_LENGTH_RATIO).contains(ratio)
 }
 
 fn corners(bounds: &Bounds) -> [Vec3; 8] {

@@ -38,7 +38,7 @@ mod volume;
 mod wind;
 
 pub use buffers::RootTransform;
-pub use clock::{Clock, ClockParams, FramePlan, SubStep};
+pub use clock::{Clock, ClockParams, FramePlan, RootPath, SubStep};
 pub use collider::{CapsuleMotion, Collider, ColliderMotion, ColliderShape, PlacedShape};
 pub use error::SimError;
 pub use input::StepInput;

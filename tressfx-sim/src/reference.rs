@@ -48,7 +48,7 @@ pub use field_sign::field_sign;
 pub use field_splat::field_splat;
 pub use interpolate::interpolate;
 pub use moved::moved;
-pub use roots::{GuideRoot, RootPlace, roots};
+pub use roots::{GuideRoot, RootPlace, RootWay, roots};
 pub use simulation::Simulation;
 pub use skin::{skin, skin_tangents};
 pub use surface_count::{NodeSurface, surface_count};

@@ -57,6 +57,8 @@ pub struct HairSim {
     pub(crate) shared: Shared,
     clock: Clock,
     resets: u64,
+    /// Which of the three places of a root is that at the start of the frame.
+    root_place: u32,
     /// The colliders of the frame that is being recorded; kept for its memory.
     colliders: ColliderList,
     /// Fields that colliders may name.
@@ -150,6 +152,7 @@ impl HairSim {
             shared,
             clock,
             resets: 0,
+            root_place: 0,
             colliders: ColliderList::default(),
             field_count: fields.map_or(0, Fields::len),
             standing,
@@ -198,7 +201,15 @@ impl HairSim {
             let place = last.map_or(ALONE, |last| FIRST + last.len() - 1);
             self.sections.iter().for_each(|section| section.record(list, Solver::FRAME_END, place));
         }
+        self.end_frame_of_roots(list);
         report
+    }
+
+    fn end_frame_of_roots(&mut self, list: &mut PassList) {
+        self.root_place = (self.root_place + 1) % 3;
+        for SimSection { buffers, info, .. } in &self.sections {
+            buffers.roots.iter().for_each(|roots| roots.end_frame(list, self.root_place, info.shape.guides));
+        }
     }
 
     fn check(&self, input: &StepInput) -> Result<(), SimError> {
@@ -222,7 +233,8 @@ impl HairSim {
     /// Says where the roots of a section are at the end of the next frame: a pose a guide, within the space of the rest pose;
     /// the head is applied after it. An identity rides on the head. Guides are in the order of [`Strands::rest`](tressfx_core::strands::Strands::rest).
     ///
-    /// Transforms stay until they are given again. Within a frame roots go evenly from where they were.
+    /// Transforms stay until they are given again. Within a frame a root goes along the cubic curve through where it is at the ends of this frame and
+    /// of the two before it, as the head does, but no farther from the straight line than 1,000 m/s^2 would lead it.
     ///
     /// # Errors
     /// A section whose roots ride on the head or that does not exist, another number of poses than guides, and poses that are
@@ -430,7 +442,9 @@ impl HairSim {
         for (index, section) in self.sections.iter().enumerate() {
             let step = |(sub_step, ranges): (&SubStep, &Vec<[u32; 2]>)| {
                 let [first, end] = ranges[index];
-                Step::new(section.params(), &section.info, sub_step, input.wind.as_ref()).with_capsules(first, end)
+                Step::new(section.params(), &section.info, sub_step, input.wind.as_ref())
+                    .with_capsules(first, end)
+                    .with_root_place(self.root_place)
             };
             let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
             section.buffers.steps.upload(list, FIRST, &steps);

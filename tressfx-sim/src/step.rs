@@ -10,7 +10,7 @@
 //!   make the same share of the motion at once. It is made before the integration, so that damping acts on what is left: with
 //!   a shock of 1 on the velocity relative to the head, with 0 on that relative to the air.
 
-use glam::{Quat, Vec2, Vec3, Vec4};
+use glam::{Quat, Vec3, Vec4};
 use tressfx_core::gpu_struct;
 use tressfx_core::strand_buffers::StrandShape;
 use tressfx_core::strands::Strands;
@@ -25,6 +25,10 @@ use crate::wind::Wind;
 pub const REFERENCE_STEP: f64 = 1.0 / 60.0;
 /// A stiffer local shape counts as this, as in TressFX: short strands would flicker between two states.
 pub(crate) const STIFFEST_LOCAL: f32 = 0.95;
+
+/// No root is bent away from the straight line within a frame by more than this acceleration would bend it, m/s^2: one that jumps would
+/// overshoot in the two frames behind.
+const MOST_ROOT_ACCELERATION: f64 = 1000.0;
 
 gpu_struct! {
     /// What changes from sub-step to sub-step. Lengths in the unit of the file; shares and displacements are those of one
@@ -47,6 +51,11 @@ gpu_struct! {
         /// Displacement by the wind from the four corners of its cone, across an edge; for [`Solver::Direct`] its velocity,
         /// units/s.
         pub wind: [Vec4; 4],
+        /// How far roots are away from the straight line between where they are at the ends of the frame: that much of the way to its end, and
+        /// of those to the starts of the last frame and of the one before it.
+        pub root_bend: Vec3,
+        /// The farthest that this may lead away from the line, units.
+        pub root_slack: f32,
         /// Share of the distance to the global shape that a vertex is moved.
         pub global_stiffness: f32,
         /// Share of the strand's vertices, from the root, that the global shape reaches.
@@ -68,7 +77,7 @@ gpu_struct! {
         pub strands: u32,
         /// Vertices of each strand.
         pub vertices: u32,
-        /// The share of their distance to where they are at the end of the frame that the roots move in this sub-step.
+        /// The share of the frame that has passed at the end of the sub-step.
         pub root_share: f32,
         /// The first capsule that the section collides with.
         pub first_capsule: u32,
@@ -92,8 +101,10 @@ gpu_struct! {
         pub pull: f32,
         /// The most rounds of Newton's method.
         pub rounds: u32,
+        /// Which of the three places of a root is that at the start of the frame; those before it are the two before, in turns.
+        pub root_place: u32,
         /// Nothing.
-        pub padding: Vec2,
+        pub padding: f32,
     }
 }
 
@@ -147,6 +158,12 @@ impl Step {
         Self { first_capsule: first, end_capsule: end, ..self }
     }
 
+    /// The same, where this is the place of a root at the start of the frame.
+    #[must_use]
+    pub(crate) fn with_root_place(self, root_place: u32) -> Self {
+        Self { root_place, ..self }
+    }
+
     /// Converts the parameters of a section for a sub-step without capsules.
     pub fn new(params: &SimParams, info: &SectionInfo, sub: &SubStep, wind: Option<&Wind>) -> Self {
         let square = sub.length * sub.length;
@@ -168,6 +185,8 @@ impl Step {
             gravity: (params.gravity.as_dvec3() * (square / metres)).as_vec3(),
             max_displacement: max_displacement as f32,
             wind: wind.map_or([Vec4::ZERO; 4], |wind| wind.corners(sub.time).map(blow)),
+            root_bend: sub.roots.bend.as_vec3(),
+            root_slack: (MOST_ROOT_ACCELERATION * sub.roots.frame * sub.roots.frame / 8.0 / metres) as f32,
             global_stiffness: if params.has_global_shape() {
                 spring_share(params.global_stiffness, sub.length) as f32
             } else {
@@ -183,7 +202,7 @@ impl Step {
             guides: info.shape.guides,
             strands: info.shape.strands(),
             vertices: info.shape.vertices,
-            root_share: sub.share_of_remaining_frame as f32,
+            root_share: sub.roots.share as f32,
             first_capsule: 0,
             end_capsule: 0,
             first_order: u32::from((sub.length_ratio - 1.0).abs() > 1e-9),
@@ -195,7 +214,8 @@ impl Step {
             drag_along: params.air_drag * params.air_drag_along,
             pull: (std::f32::consts::TAU * params.pull_frequency).powi(2),
             rounds: params.rounds,
-            padding: Vec2::ZERO,
+            root_place: 0,
+            padding: 0.0,
         }
     }
 }

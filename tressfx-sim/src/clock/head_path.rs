@@ -1,4 +1,4 @@
-//! The path of the head within a frame, of which only the ends are known.
+//! The path of the head, and of roots that move by themselves, within a frame, of which only the ends are known.
 
 use glam::{DQuat, DVec3};
 use tressfx_core::view::Pose;
@@ -34,7 +34,7 @@ struct NewtonPolynomial {
 }
 
 /// From this share of the frame on the pose is that of its end.
-const END: f64 = 1.0 - 1e-6;
+pub(crate) const END: f64 = 1.0 - 1e-6;
 
 /// The pose at the start of an earlier frame, and the length of that frame divided by the length of this one.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +87,15 @@ impl NewtonPolynomial {
     fn at(&self, t: f64) -> DVec3 {
         t * (self.first + (t - 1.0) * (self.second + (t + self.last_length) * self.third))
     }
+}
+
+/// How far the path leads away from the straight line at a share `t` of the frame: that much of the way from its start to its end, to the
+/// start of the last frame, and to that of the frame before it. `before` are the lengths of these two frames over that of this one.
+pub(crate) fn bend(before: [Option<f64>; 2], t: f64) -> DVec3 {
+    // What a path makes of three points on three axes is what it makes of each.
+    let [last, earlier] = before;
+    let before = [last.map(|length| (DVec3::Y, length)), earlier.map(|length| (DVec3::Z, length))];
+    NewtonPolynomial::new(before, DVec3::X).at(t) - t * DVec3::X
 }
 
 /// The rotation from one pose to another as axis times angle, in the direction with the smaller angle.

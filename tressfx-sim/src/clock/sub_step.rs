@@ -1,6 +1,6 @@
 //! The sub-steps of a frame.
 
-use glam::{Quat, Vec3};
+use glam::{DVec3, Quat, Vec3};
 use tressfx_core::view::Pose;
 
 /// One sub-step.
@@ -25,8 +25,25 @@ pub struct SubStep {
     /// Its beginning and its end, as shares of the simulated part of the frame. The first sub-step may begin before the
     /// frame: its first share is then less than 0.
     pub shares: [f64; 2],
-    /// Its length divided by the time from its beginning to the end of the frame.
-    pub share_of_remaining_frame: f64,
+    /// Where roots that move by themselves are at its end.
+    pub roots: RootPath,
+}
+
+/// How far roots have come on their ways, which lead through where they are at the ends of this frame and of the two before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootPath {
+    /// The share of the frame that has passed, 0 to 1.
+    pub share: f64,
+    /// How far they are away from the straight line: that much of the way from the start of the frame to its end, to the start of the last
+    /// frame, and to that of the one before it.
+    pub bend: DVec3,
+    /// Length of the frame, s.
+    pub frame: f64,
+}
+
+impl RootPath {
+    /// At the end of a frame.
+    pub const END: Self = Self { share: 1.0, bend: DVec3::ZERO, frame: 0.0 };
 }
 
 impl SubStep {
@@ -43,7 +60,7 @@ impl SubStep {
             head_acceleration: 0.0,
             heads: [head; 2],
             shares: [0.0, 1.0],
-            share_of_remaining_frame: 1.0,
+            roots: RootPath::END,
         }
     }
 }

@@ -172,15 +172,36 @@ fn poses_within_a_frame_are_shorter_frames_with_the_shares_of_the_whole() {
         assert_eq!(along.sub_steps.len(), 6);
         for (index, (sub_step, expected)) in along.sub_steps.iter().zip(&one_by_one).enumerate() {
             assert!((sub_step.shares[1] - (index + 1) as f64 / 6.0).abs() < 1e-9, "{:?}", sub_step.shares);
-            assert!((sub_step.share_of_remaining_frame - 1.0 / (6 - index) as f64).abs() < 1e-9);
-            let same = SubStep {
-                shares: expected.shares,
-                share_of_remaining_frame: expected.share_of_remaining_frame,
-                ..*sub_step
-            };
+            assert!((sub_step.roots.share - sub_step.shares[1].min(1.0)).abs() < 1e-6, "roots have one way");
+            let same = SubStep { shares: expected.shares, roots: expected.roots, ..*sub_step };
             assert!((same.time - expected.time).abs() < 1e-12 && SubStep { time: expected.time, ..same } == *expected);
         }
     }
+}
+
+#[test]
+fn roots_have_the_way_of_the_head() {
+    let mut clock = clock();
+    // Frames of several lengths, one of them too long, and one twice as long as the one before it and more.
+    let lengths: [f64; 10] =
+        [1.0 / 30.0, 1.0 / 30.0, 1.0 / 50.0, 1.0 / 30.0, 1.0 / 144.0, 1.0 / 100.0, 0.3, 0.1, 0.1, 0.05];
+    let (mut before, mut reached) = ([0.0_f64; 3], 0.0);
+    for (index, dt) in lengths.into_iter().enumerate() {
+        let end = 0.03 * f64::sin(0.9 * index as f64);
+        let frame = clock.advance(dt, moved(end as f32));
+        for sub_step in frame.sub_steps {
+            reached += f64::from(sub_step.center_displacement.x);
+            let (start, way) = (before[0], sub_step.roots);
+            let bend = way.bend.dot(DVec3::new(end - start, before[1] - start, before[2] - start));
+            let root = start + way.share * (end - start) + bend;
+            assert!((root - reached).abs() < 1e-6, "frame {index} at {}: {root}, {reached}", way.share);
+            assert!(way.share == 1.0 || (way.frame - (dt - frame.dropped)).abs() < 1e-9);
+        }
+        before = [end, before[0], before[1]];
+    }
+    assert!(clock.advance(1.0 / 60.0, moved(50.0)).teleported);
+    let reset = clock.advance(0.0, Pose::IDENTITY);
+    assert!(reset.sub_steps.iter().all(|sub_step| sub_step.roots == RootPath::END));
 }
 
 #[test]

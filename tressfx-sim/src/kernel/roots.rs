@@ -14,7 +14,13 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 
 /// Nothing where the roots ride on the head.
 pub(crate) fn roots(maker: &mut PassMaker) -> Result<Option<Pass>> {
-    let Some(RootBuffers { targets, reached, now }) = maker.buffers.roots else { return Ok(None) };
-    let resources = [("targets", targets.into()), ("reached", reached.into()), ("guide_roots", now.into())];
+    let Some(RootBuffers { targets, places, now }) = maker.buffers.roots else { return Ok(None) };
+    let resources = [
+        ("targets", targets.into()),
+        ("places_0", places[0].into()),
+        ("places_1", places[1].into()),
+        ("places_2", places[2].into()),
+        ("guide_roots", now.into()),
+    ];
     maker.pass(&SOURCE, &Specialization::new(), &resources, maker.guides()).map(Some)
 }

@@ -34,20 +34,61 @@ impl RootPlace {
     /// A root that rides on the head.
     pub const WITH_HEAD: Self = Self { rotation: DQuat::IDENTITY, place: DVec3::ZERO };
 
-    /// The transform at a share of the distance to another.
-    fn towards(&self, other: &Self, share: f64) -> Self {
-        let near = if self.rotation.dot(other.rotation) < 0.0 { -other.rotation } else { other.rotation };
-        let rotation = DVec4::from(self.rotation).lerp(near.into(), share).normalize();
-        Self { rotation: DQuat::from_vec4(rotation), place: self.place.lerp(other.place, share) }
+    /// The rotation as it is nearer to that of another root, of the two signs that a quaternion may have.
+    fn turn_near(&self, other: &Self) -> DVec4 {
+        let near = self.rotation.dot(other.rotation) >= 0.0;
+        DVec4::from(if near { self.rotation } else { -self.rotation })
     }
 }
 
-/// A root goes on to where it is at the end of the frame. `reached` is where it was at the end of the last sub-step.
-pub fn roots(step: &Step, target: &RootPlace, reached: &mut RootPlace, root: &mut GuideRoot) {
-    *reached = reached.towards(target, step.root_share.into());
+/// Where a root goes in a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootWay {
+    /// At the end of the frame.
+    pub end: RootPlace,
+    /// At its start, and at the starts of the last frame and of the one before it.
+    pub before: [RootPlace; 3],
+}
+
+impl RootWay {
+    /// A root that has always been with the head.
+    pub const WITH_HEAD: Self = Self { end: RootPlace::WITH_HEAD, before: [RootPlace::WITH_HEAD; 3] };
+
+    /// The next frame begins.
+    pub(super) fn end_frame(&mut self) {
+        self.before = [self.end, self.before[0], self.before[1]];
+    }
+
+    /// Where it is at the end of a sub-step.
+    fn at(&self, step: &Step) -> RootPlace {
+        let Self { end, before: [start, last, earlier] } = self;
+        if step.root_share >= 1.0 || start == end {
+            return *end;
+        }
+        let [end_turn, last_turn, earlier_turn] = [end, last, earlier].map(|root| root.turn_near(start));
+        let turn = bent(step, start.rotation.into(), [end_turn, last_turn, earlier_turn], TURN_SLACK);
+        let wide = |root: &RootPlace| root.place.extend(0.0);
+        let place = bent(step, wide(start), [end, last, earlier].map(wide), step.root_slack.into());
+        RootPlace { rotation: DQuat::from_vec4(turn.normalize()), place: place.truncate() }
+    }
+}
+
+/// The farthest that the curve may lead from the straight line between two unit quaternions.
+const TURN_SLACK: f64 = 0.25;
+
+/// A point on the curve from `start` to the first of the others.
+fn bent(step: &Step, start: DVec4, others: [DVec4; 3], slack: f64) -> DVec4 {
+    let bend = step.root_bend.as_dvec3().to_array();
+    let away: DVec4 = others.iter().zip(bend).map(|(&other, bend)| bend * (other - start)).sum();
+    start.lerp(others[0], step.root_share.into()) + away.clamp_length_max(slack)
+}
+
+/// A root goes on to where it is at the end of the sub-step.
+pub fn roots(step: &Step, way: &RootWay, root: &mut GuideRoot) {
+    let here = way.at(step);
     let head = step.head_rotation.as_dvec4();
-    let rotation = DQuat::from_vec4(head) * reached.rotation;
-    let now = RootPlace { rotation, place: rotate(head, reached.place) };
+    let rotation = DQuat::from_vec4(head) * here.rotation;
+    let now = RootPlace { rotation, place: rotate(head, here.place) };
     *root = GuideRoot { now, last: if step.reset == 0 { root.now } else { now } };
 }
 

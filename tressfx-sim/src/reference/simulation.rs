@@ -8,7 +8,7 @@ use tressfx_core::view::Pose;
 use super::direct::{Rod, RodRest, direct_guide};
 use super::field::{Field, PlacedField};
 use super::volume::{GroomVolume, Moving, to_world, volume_vertex};
-use super::{Guide, GuideRoot, RootPlace, follow_strand, roots, tressfx};
+use super::{Guide, GuideRoot, RootPlace, RootWay, follow_strand, roots, tressfx};
 use crate::buffers::RootTransform;
 use crate::clock::{Clock, ClockParams};
 use crate::collider::{CapsuleMotion, PlacedShape};
@@ -42,9 +42,8 @@ struct Section<'a> {
     step: Step,
     positions: Vec<DVec3>,
     previous: Vec<DVec3>,
-    /// Of each guide: the target at the end of the frame, where it was at the last sub-step, and the motion; empty where
-    /// roots ride on the head.
-    roots: Vec<(RootPlace, RootPlace, GuideRoot)>,
+    /// Of each guide: its way in the frame, and its motion; empty where roots ride on the head.
+    roots: Vec<(RootWay, GuideRoot)>,
     /// One a guide; empty where another solver moves them.
     rods: Vec<(RodRest, Rod)>,
 }
@@ -122,6 +121,7 @@ impl<'a> Simulation<'a> {
             }
             self.volume_step();
         }
+        self.sections.iter_mut().flat_map(|section| &mut section.roots).for_each(|(way, _)| way.end_frame());
         Ok(StepReport {
             sub_steps: plan.sub_steps.len() as u32,
             reset: plan.reset.is_some(),
@@ -150,8 +150,8 @@ impl<'a> Simulation<'a> {
         let center = self.clock.center();
         let roots = &mut self.sections[section].roots;
         assert_eq!(roots.len(), poses.len(), "roots of section {section}");
-        for ((target, ..), pose) in roots.iter_mut().zip(poses) {
-            *target = RootTransform::new(center, pose).into();
+        for ((way, _), pose) in roots.iter_mut().zip(poses) {
+            way.end = RootTransform::new(center, pose).into();
         }
     }
 
@@ -199,8 +199,7 @@ impl<'a> Section<'a> {
             (rest, rod)
         };
         let rods = if desc.solver == Solver::Direct { strands.guides as usize } else { 0 };
-        let still = (RootPlace::WITH_HEAD, RootPlace::WITH_HEAD);
-        let root = GuideRoot { now: still.0, last: still.1 };
+        let root = GuideRoot { now: RootPlace::WITH_HEAD, last: RootPlace::WITH_HEAD };
         let roots = if desc.own_roots { strands.guides as usize } else { 0 };
         Self {
             strands,
@@ -210,14 +209,14 @@ impl<'a> Section<'a> {
             step: Step::reset(&desc.params, &info, Quat::IDENTITY),
             positions: vec![DVec3::ZERO; strands.rest.len()],
             previous: vec![DVec3::ZERO; strands.rest.len()],
-            roots: vec![(still.0, still.1, root); roots],
+            roots: vec![(RootWay::WITH_HEAD, root); roots],
             rods: (0..rods).map(rod).collect(),
         }
     }
 
     fn move_roots(&mut self) {
-        for (target, reached, root) in &mut self.roots {
-            roots(&self.step, target, reached, root);
+        for (way, root) in &mut self.roots {
+            roots(&self.step, way, root);
         }
     }
 
