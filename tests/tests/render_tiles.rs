@@ -148,7 +148,7 @@ fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, 
 }
 
 /// The tilt where a strand begins or ends.
-const ROUND: f32 = 1e9;
+const ROUND: f32 = 65024.0;
 
 /// What tiles keep of a vertex.
 struct Kept {
@@ -163,18 +163,14 @@ impl Kept {
     /// From its words of `vertices` and of `paints`.
     fn new(words: &[u32], paint: &[u32]) -> Self {
         let point = [0, 1, 2].map(|axis| f64::from(f32::from_bits(words[axis])));
-        let radius = f32::from_bits(((words[3] >> 14) << 11) + 0x2b80_0000);
-        let (size, is_left) = ((words[3] >> 2) & 0x7ff, (words[3] >> 13) & 1 == 1);
-        let tilt = match size {
-            0 => 0.0,
-            0x7ff => ROUND,
-            _ => f32::from_bits(((size - 1) << 17) + 0x3580_0000),
-        };
+        let radius = (words[3] >> 16) << 2 | (words[3] >> 2) & 3;
+        let radius = f32::from_bits((radius << 11) + 0x2b80_0000);
+        let tilt = half::f16::from_bits((words[3] & 0xfff0) as u16).to_f32();
         assert_eq!(words[3] & 2, 0, "it is not beyond the near plane");
         Self {
             point: DVec4::new(point[0], point[1], point[2], radius.into()),
             color: color(paint),
-            tilt: if is_left { -tilt } else { tilt },
+            tilt,
             leads_on: words[3] & 1 == 1,
         }
     }

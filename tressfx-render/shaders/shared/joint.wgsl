@@ -4,16 +4,14 @@ import package::view::LensUniform;
 
 // The tilt of a joint is the tangent of half the angle by which the strand turns there on the screen. Across a segment by one pixel, the
 // bisector of the turn is so many pixels nearer to it. The pixels on either side of the bisector belong to either segment.
-// Where the strand begins or ends:
-const ROUND: f32 = 1e9;
+// Where the strand begins or ends, more than any of a joint:
+const ROUND: f32 = 65024.0;
 // At a larger tilt a segment ends round, where a strip up to the bisector would leave a spike.
 const SHARP: f32 = 0.42;
 const LARGEST: f32 = 1e3;
-// Below this it is 0. It has 6 bits behind its highest one, so that 12 bits can store it: see `pack_tilt`.
-const LEAST: f32 = 9.5367431640625e-7;
+// Below this it is 0, and it has 6 bits behind its highest one: a half float without its four lowest bits, which no implementation rounds.
+const LEAST: f32 = 6.103515625e-5;
 const TILT_CUT: u32 = 17u;
-const TILT_SIGN: u32 = 0x800u;
-const PACKED_ROUND: u32 = 0x7ffu;
 
 // How high the surface of a fibre rises before its axis in the mean, in radii.
 const MEAN_RISE: f32 = 0.785398;
@@ -29,24 +27,6 @@ fn tilt_of(before: vec2<f32>, after: vec2<f32>) -> f32 {
 fn rounded_tilt(tilt: f32) -> f32 {
     let bits = ((bitcast<u32>(tilt) + (1u << (TILT_CUT - 1u))) >> TILT_CUT) << TILT_CUT;
     return select(bitcast<f32>(bits), 0.0, abs(tilt) < LEAST);
-}
-
-// A rounded tilt, or `ROUND`, in 12 bits.
-fn pack_tilt(tilt: f32) -> u32 {
-    if tilt == 0.0 || tilt == ROUND {
-        return select(0u, PACKED_ROUND, tilt == ROUND);
-    }
-    let size = ((bitcast<u32>(abs(tilt)) - bitcast<u32>(LEAST)) >> TILT_CUT) + 1u;
-    return size | select(0u, TILT_SIGN, tilt < 0.0);
-}
-
-fn unpack_tilt(packed: u32) -> f32 {
-    let size = packed & ~TILT_SIGN;
-    if size == 0u || size == PACKED_ROUND {
-        return select(0.0, ROUND, size == PACKED_ROUND);
-    }
-    let tilt = bitcast<f32>(((size - 1u) << TILT_CUT) + bitcast<u32>(LEAST));
-    return select(tilt, -tilt, packed != size);
 }
 
 // The eye does not meet the axis of a fibre but its surface, which is nearer. Along a fibre that leads towards the eye that is

@@ -1,6 +1,5 @@
 // The segments of all sections on the screen: what `hair.render.tile_points` has left.
 
-import package::joint::{pack_tilt, unpack_tilt};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, project, scale_of, width_scale};
 import package::screen::view;
@@ -23,13 +22,11 @@ struct Vertex {
 // Colour and opacity of the surface at each of them, as four half floats.
 @group(0) @binding(3) var<storage, read> paints: array<vec2<u32>>;
 
-// A word of a vertex, from the lowest bit: `leads_on`, `is_beyond`, 12 bits for the tilt, and of the radius 6 bits of the exponent and 12
-// behind it.
+// A word of a vertex: `leads_on`, `is_beyond`, the lowest two bits of the radius, the tilt as a half float without its lowest four bits, and
+// the other bits of the radius. Of it 6 bits of the exponent are stored, and 12 behind it.
 const LEADS_ON: u32 = 1u;
 const IS_BEYOND: u32 = 2u;
-const TILT_SHIFT: u32 = 2u;
-const TILT_BITS: u32 = 12u;
-const RADIUS_SHIFT: u32 = 14u;
+const TILT_BITS: u32 = 0xfff0u;
 // The bits of a radius that are not stored.
 const RADIUS_CUT: u32 = 11u;
 // 1e-12 and 1.6e7: radii are stored between them.
@@ -38,16 +35,18 @@ const MOST_RADIUS: u32 = 0x4b7ff800u;
 
 fn pack_rest(vertex: Vertex) -> u32 {
     let flags = select(0u, LEADS_ON, vertex.leads_on) | select(0u, IS_BEYOND, vertex.is_beyond);
+    let tilt = pack2x16float(vec2(vertex.tilt, 0.0)) & TILT_BITS;
     let bits = clamp(bitcast<u32>(vertex.radius), LEAST_RADIUS, MOST_RADIUS) - LEAST_RADIUS;
     let radius = (bits + (1u << (RADIUS_CUT - 1u))) >> RADIUS_CUT;
-    return flags | (pack_tilt(vertex.tilt) << TILT_SHIFT) | (radius << RADIUS_SHIFT);
+    return flags | tilt | ((radius & 3u) << 2u) | ((radius >> 2u) << 16u);
 }
 
 fn unpack_vertex(packed: vec4<u32>) -> Vertex {
     let rest = packed.w;
-    let tilt = unpack_tilt(extractBits(rest, TILT_SHIFT, TILT_BITS));
-    let radius = bitcast<f32>(((rest >> RADIUS_SHIFT) << RADIUS_CUT) + LEAST_RADIUS);
-    return Vertex(bitcast<vec3<f32>>(packed.xyz), radius, tilt, (rest & IS_BEYOND) != 0u, (rest & LEADS_ON) != 0u);
+    let tilt = unpack2x16float(rest & TILT_BITS).x;
+    let radius = ((rest >> 16u) << 2u) | extractBits(rest, 2u, 2u);
+    let bits = (radius << RADIUS_CUT) + LEAST_RADIUS;
+    return Vertex(bitcast<vec3<f32>>(packed.xyz), bitcast<f32>(bits), tilt, (rest & IS_BEYOND) != 0u, (rest & LEADS_ON) != 0u);
 }
 
 fn leads_on(vertex: u32) -> bool {

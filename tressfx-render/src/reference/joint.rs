@@ -60,9 +60,9 @@ impl Joint {
     }
 }
 
-/// A tilt has 6 bits behind its highest one, and is 0 below 2^-20.
+/// A tilt has 6 bits behind its highest one, and is 0 below 2^-14.
 fn rounded_tilt(tilt: f64) -> f64 {
-    if tilt.abs() < 2f64.powi(-20) {
+    if tilt.abs() < 2f64.powi(-14) {
         return 0.0;
     }
     let last = 2f64.powi(tilt.abs().log2().floor() as i32 - 6);
