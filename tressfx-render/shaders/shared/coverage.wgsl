@@ -23,14 +23,14 @@ fn coverage(distance: f32, half_width: f32, reach: vec2<f32>) -> f32 {
     return max(0.0, side(distance + half_width, reach) - side(distance - half_width, reach));
 }
 
-// How high a round fibre rises before its axis where a pixel sees it, in the mean: the circle at two places across what is
-// covered of the pixel (Gauss).
+// How high a round fibre rises before its axis where a pixel sees it: the root of the mean square of the height over what is covered of
+// the pixel across.
 fn rise_of(distance: f32, half_width: f32) -> f32 {
     let low = clamp(distance - 0.5, -half_width, half_width);
     let high = clamp(distance + 0.5, -half_width, half_width);
-    let across = mix(vec2(low), vec2(high), vec2(0.211325, 0.788675));
-    let rises = sqrt(max(vec2(half_width * half_width) - across * across, vec2(0.0)));
-    return 0.5 * (rises.x + rises.y);
+    let middle = 0.5 * (low + high);
+    let width = high - low;
+    return sqrt(max(half_width * half_width - middle * middle - width * width / 12.0, 0.0));
 }
 
 // The share of a pixel between two ends that are so far before and behind its centre. The pixel is as long as `length` along them.

@@ -1,7 +1,5 @@
 // How a strand goes on at a vertex, as the eye sees it.
 
-import package::view::LensUniform;
-
 // The tilt of a joint is the tangent of half the angle by which the strand turns there on the screen. Across a segment by one pixel, the
 // bisector of the turn is so many pixels nearer to it. The pixels on either side of the bisector belong to either segment.
 // Where the strand begins or ends, more than any of a joint:
@@ -12,9 +10,6 @@ const LARGEST: f32 = 1e3;
 // Below this it is 0, and it has 6 bits behind its highest one: a half float without its four lowest bits, which no implementation rounds.
 const LEAST: f32 = 6.103515625e-5;
 const TILT_CUT: u32 = 17u;
-
-// How high the surface of a fibre rises before its axis in the mean, in radii.
-const MEAN_RISE: f32 = 0.785398;
 
 // The tilt where one segment leads to another; both as they lie on the screen.
 fn tilt_of(before: vec2<f32>, after: vec2<f32>) -> f32 {
@@ -27,12 +22,4 @@ fn tilt_of(before: vec2<f32>, after: vec2<f32>) -> f32 {
 fn rounded_tilt(tilt: f32) -> f32 {
     let bits = ((bitcast<u32>(tilt) + (1u << (TILT_CUT - 1u))) >> TILT_CUT) << TILT_CUT;
     return select(bitcast<f32>(bits), 0.0, abs(tilt) < LEAST);
-}
-
-// The eye does not meet the axis of a fibre but its surface, which is nearer. Along a fibre that leads towards the eye that is
-// farther to the tip: so much in the unit of the positions. `tangent` is of any length, as the fibre leads.
-fn rise_along(lens: LensUniform, point: vec3<f32>, tangent: vec3<f32>, radius: f32) -> f32 {
-    let ray = select(vec3(0.0, 0.0, 1.0), -point, lens.is_perspective == 1u);
-    let across = cross(tangent, ray);
-    return MEAN_RISE * radius * dot(tangent, ray) * inverseSqrt(max(dot(across, across), 1e-30));
 }

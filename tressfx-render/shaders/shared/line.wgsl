@@ -3,7 +3,7 @@
 import package::coverage::{between, coverage, pixel_reach, rise_of};
 import package::fragment::{Fragment, OPAQUE};
 import package::joint::{ROUND, SHARP};
-import package::ribbon::{Ribbon, along};
+import package::ribbon::{Ribbon, along, slant_of};
 import package::screen::{scene_nearness, view};
 
 @if(places)
@@ -15,6 +15,9 @@ struct Paint {
     end: vec4<f32>,
 }
 
+// The surface may be of the segments before and behind, whose colours are not known here: up to this share of its length a segment goes on as
+// it is.
+const SURPLUS: f32 = 0.5;
 // The square of a length in pixels: a shorter segment has no direction.
 const SHORTEST: f32 = 1e-12;
 // The largest number below 1.
@@ -84,21 +87,24 @@ fn pixel_length(ribbon: Ribbon, line: Line, owned: f32) -> f32 {
 fn fragment_on(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
     let at = beside(ribbon, line, pixel);
+    let rise = rise_of(at.y, half_width);
     var covered = coverage(at.y, half_width, line.reach);
     // Most segments go straight on at both ends.
     if any(is_sharp(ribbon)) {
         let length = sqrt(line.square);
-        let rise = rise_of(at.y, half_width);
         let ends = rise + slack_of(ribbon);
         covered *= between(at.x + ends.x, length - at.x + ends.y, pixel_length(ribbon, line, length + rise));
     }
-    let color = mix(paint.start, paint.end, along(ribbon, place));
+    let axis = along(ribbon, place);
+    let surface = clamp(axis + rise * slant_of(view.lens, ribbon), -SURPLUS, 1.0 + SURPLUS);
+    let color = max(mix(paint.start.rgb, paint.end.rgb, surface), vec3(0.0));
+    let opacity = mix(paint.start.a, paint.end.a, axis);
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
-    let alpha = u32(round(saturate(covered * color.a) * OPAQUE));
-    @if(!places) { return Fragment(color.rgb, nearness, alpha); }
+    let alpha = u32(round(saturate(covered * opacity) * OPAQUE));
+    @if(!places) { return Fragment(color, nearness, alpha); }
     @if(places) {
-        let parts = with_mean(shares_of(at.y, half_width, line.normal), min(covered, 1.0)) * color.a;
-        return Fragment(color.rgb, nearness, alpha, saturate(parts));
+        let parts = with_mean(shares_of(at.y, half_width, line.normal), min(covered, 1.0)) * opacity;
+        return Fragment(color, nearness, alpha, saturate(parts));
     }
 }
 

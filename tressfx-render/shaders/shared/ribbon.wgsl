@@ -37,6 +37,12 @@ fn on_screen(lens: LensUniform, point: vec2<f32>, scale: f32) -> vec2<f32> {
     return lens.center + vec2(focal.x * point.x, -(lens.skew * scale * point.x + focal.y * point.y));
 }
 
+// What `on_screen` makes so many pixels of, from the centre and at w 1.
+fn off_screen(lens: LensUniform, pixels: vec2<f32>) -> vec2<f32> {
+    let right = pixels.x / lens.focal.x;
+    return vec2(right, -(pixels.y + lens.skew * right) / lens.focal.y);
+}
+
 // Pixels of half a unit of width at w 1, across a line on the screen.
 fn width_scale(lens: LensUniform, delta: vec2<f32>) -> f32 {
     if lens.even_focal > 0.0 {
@@ -91,6 +97,34 @@ fn margin_of(half_width: vec2<f32>) -> f32 {
 // Where on a segment, 0 to 1, its screen parameter `t` is, that is 0 and 1 at the ribbon's ends.
 fn along(ribbon: Ribbon, t: f32) -> f32 {
     return mix(ribbon.part.x, ribbon.part.y, t * ribbon.scale.y / mix(ribbon.scale.x, ribbon.scale.y, t));
+}
+
+// The eye meets the surface of a fibre before its axis. Where the fibre leads towards the eye, a pixel shows a part that is farther along it
+// than the axis there: by so much of the segment for each pixel by which the surface rises. It is the cotangent of the angle between the
+// segment and the ray through its middle, over the length of the segment.
+fn slant_of(lens: LensUniform, ribbon: Ribbon) -> f32 {
+    var across = ribbon.end - ribbon.start;
+    let focal = width_scale(lens, across);
+    var ray = (lens.center - 0.5 * (ribbon.start + ribbon.end)) / focal;
+    if lens.even_focal == 0.0 {
+        across = focal * off_screen(lens, across);
+        ray = off_screen(lens, focal * ray);
+    }
+    // By how much the segment leads towards the eye. All lengths are in pixels of its middle.
+    var towards = focal * (ribbon.nearness.y - ribbon.nearness.x);
+    if lens.is_perspective == 1u {
+        towards *= 2.0 / max(ribbon.nearness.x + ribbon.nearness.y, 1e-30);
+    } else {
+        towards /= lens.nearness_slope;
+        ray = vec2(0.0);
+    }
+    // The segment is `vec3(across, 0) + towards * vec3(ray, 1)`.
+    let square = dot(across, across);
+    let beside = across.x * ray.y - across.y * ray.x;
+    let along = dot(across, ray);
+    let ahead = towards * (1.0 + dot(ray, ray));
+    let lengths = (square + beside * beside) * (square + towards * (2.0 * along + ahead));
+    return (along + ahead) * (ribbon.part.y - ribbon.part.x) * inverseSqrt(max(lengths, 1e-30));
 }
 
 // Cuts off what is further than `margin` outside the image, so that coordinates stay small.

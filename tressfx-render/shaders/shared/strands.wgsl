@@ -1,7 +1,7 @@
 // The strands of a section before the lens of a view: what every technique that walks over them is given. Strands and vertices are numbered as
 // they are drawn: see `lod`.
 
-import package::joint::{ROUND, rise_along, tilt_of};
+import package::joint::{ROUND, tilt_of};
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, on_screen, project, scale_at};
 import package::screen::view;
@@ -98,18 +98,9 @@ fn tilt_between(bend: Bend) -> f32 {
     return tilt_of(middle - pixel_at(bend.before), pixel_at(bend.after) - middle);
 }
 
-fn shaded_at(strand: Strand, vertex: u32) -> vec4<f32> {
+fn color_of(strand: Strand, vertex: u32) -> vec4<f32> {
     let color = colors[vertex_of(strand, vertex)];
     return vec4(unpack2x16float(color.x), unpack2x16float(color.y));
-}
-
-// Colour and opacity of the surface that is seen at a vertex: they are those of a place before or behind it. `beside` are the
-// vertices before and after it.
-fn paint_between(bend: Bend, strand: Strand, vertex: u32, beside: vec2<u32>) -> vec4<f32> {
-    let rise = rise_along(view.lens, bend.middle, bend.after - bend.before, radius_at(strand, vertex));
-    let edge = select(bend.before, bend.after, rise > 0.0) - bend.middle;
-    let share = min(abs(rise) * inverseSqrt(max(dot(edge, edge), 1e-30)), 1.0);
-    return mix(shaded_at(strand, vertex), shaded_at(strand, select(beside.x, beside.y, rise > 0.0)), share);
 }
 
 // The vertices before and after one; where no segment leads to it or from it, the vertex itself.
@@ -154,9 +145,5 @@ fn ribbon_of(strand: Strand, vertex: u32) -> Ribbon {
 }
 
 fn paint_of(strand: Strand, vertex: u32) -> Paint {
-    let stretch = stretch_of(strand, vertex);
-    return Paint(
-        paint_between(stretch.start, strand, vertex, stretch.vertices.xz),
-        paint_between(stretch.end, strand, vertex + 1u, stretch.vertices.yw),
-    );
+    return Paint(color_of(strand, vertex), color_of(strand, vertex + 1u));
 }

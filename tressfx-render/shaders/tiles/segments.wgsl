@@ -1,7 +1,7 @@
 // The segments of all sections on the screen: what `hair.render.tile_points` has left.
 
 import package::line::Paint;
-import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, project, scale_of, width_scale};
+import package::ribbon::{End, Ribbon, clip, is_sound, margin_of, off_screen, project, scale_of, width_scale};
 import package::screen::view;
 import package::tiles::distance_of;
 
@@ -19,7 +19,7 @@ struct Vertex {
 
 // Those that may be seen of a strand follow each other: `point`, and what `pack_rest` makes of the rest.
 @group(0) @binding(2) var<storage, read> vertices: array<vec4<u32>>;
-// Colour and opacity of the surface at each of them, as four half floats.
+// Colour and opacity of each of them, as four half floats.
 @group(0) @binding(3) var<storage, read> paints: array<vec2<u32>>;
 
 // A word of a vertex: `leads_on`, `is_beyond`, the lowest two bits of the radius, the tilt as a half float without its lowest four bits, and
@@ -63,9 +63,8 @@ fn end_of(vertex: Vertex) -> End {
         return End(point, vertex.radius);
     }
     let scale = scale_of(view.lens, point.zz).x;
-    let right = (point.x - view.lens.center.x) / (view.lens.focal.x * scale);
-    let up = (view.lens.center.y - point.y - view.lens.skew * scale * right) / (view.lens.focal.y * scale);
-    return End(vec3(right, up, -distance_of(point.z)), vertex.radius / scale);
+    let across = off_screen(view.lens, point.xy - view.lens.center) / scale;
+    return End(vec3(across, -distance_of(point.z)), vertex.radius / scale);
 }
 
 // The segment from a vertex on.

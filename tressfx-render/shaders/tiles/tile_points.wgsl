@@ -6,7 +6,7 @@ import package::joint::ROUND;
 import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
 import package::segments::{LARGEST_PIXEL, Vertex, pack_rest};
-import package::strands::{Strand, bend_at, end_at, is_sound_at, neighbours_of, paint_between, section, strand_at, tilt_between};
+import package::strands::{Strand, bend_at, colors, end_at, is_sound_at, neighbours_of, section, strand_at, tilt_between, vertex_of};
 import package::tile::TILE;
 import package::tiles::{DISTANCE_MARGIN, SharedTileInfo, ViewState, nearness_at, tile_columns, tiles};
 
@@ -74,11 +74,10 @@ fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
 fn store(place: u32, strand: Strand, vertex: u32, point: vec4<f32>, leads_on: bool) {
     let beside = neighbours_of(strand, vertex);
     let bend = bend_at(strand, vertex, beside);
-    let paint = paint_between(bend, strand, vertex, beside);
     let tilt = select(tilt_between(bend), ROUND, any(beside == vec2(vertex)));
     let rest = pack_rest(Vertex(point.xyz, abs(point.w), tilt, point.w < 0.0, leads_on));
     vertices[place] = vec4(bitcast<vec3<u32>>(point.xyz), rest);
-    paints[place] = vec2(pack2x16float(paint.rg), pack2x16float(paint.ba));
+    paints[place] = colors[vertex_of(strand, vertex)];
 }
 
 fn note_nearest(point: vec4<f32>) {

@@ -21,15 +21,12 @@ pub fn coverage(distance: f64, half_width: f64, normal: DVec2) -> f64 {
     (side(distance + half_width) - side(distance - half_width)).max(0.0)
 }
 
-/// How high a round fibre rises before its axis where a pixel at `distance` sees it: the mean of two points (Gauss).
+/// How high a round fibre rises before its axis where a pixel at `distance` sees it: the root of the mean square.
 pub(super) fn rise(distance: f64, half_width: f64) -> f64 {
     let [low, high] = [distance - 0.5, distance + 0.5].map(|edge| edge.clamp(-half_width, half_width));
-    let gauss = 0.5 / 3f64.sqrt();
-    let at = |t: f64| {
-        let across = low + (high - low) * t;
-        (half_width * half_width - across * across).max(0.0).sqrt()
-    };
-    0.5 * (at(0.5 - gauss) + at(0.5 + gauss))
+    // The mean of the squares of all places from one edge to the other.
+    let square = (low * low + low * high + high * high) / 3.0;
+    (half_width * half_width - square).max(0.0).sqrt()
 }
 
 /// How long a pixel is taken along a line with the unit normal `normal`: as long as it is in the middle.

@@ -1,8 +1,6 @@
 //! How a strand goes on at a vertex, as the eye sees it.
 
-use std::f64::consts::FRAC_PI_4;
-
-use glam::{DVec2, DVec4};
+use glam::DVec2;
 
 use super::Strands;
 use super::projection::Projection;
@@ -67,17 +65,4 @@ fn rounded_tilt(tilt: f64) -> f64 {
     }
     let last = 2f64.powi(tilt.abs().log2().floor() as i32 - 6);
     (tilt / last).round() * last
-}
-
-/// Colour and opacity of the surface that is seen at a vertex: those of the axis where the surface is as high as in the mean.
-pub(super) fn paint(projection: &Projection, strands: &Strands, colors: &[DVec4], strand: u32, vertex: u32) -> DVec4 {
-    let place = |vertex: u32| strands.point(strand, vertex);
-    let before = strands.before(strand, vertex).unwrap_or(vertex);
-    let after = strands.after(strand, vertex).unwrap_or(vertex);
-    let point = place(vertex);
-    let (tangent, ray) = (place(after) - place(before), projection.towards_eye(point));
-    let rise = FRAC_PI_4 * strands.radius(strand, vertex) * tangent.dot(ray) / tangent.cross(ray).length().max(1e-15);
-    let next = if rise > 0.0 { after } else { before };
-    let share = (rise.abs() / place(next).distance(point).max(1e-15)).min(1.0);
-    colors[strands.index(strand, vertex)].lerp(colors[strands.index(strand, next)], share)
 }

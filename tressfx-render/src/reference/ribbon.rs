@@ -1,9 +1,9 @@
 //! A segment of a strand on the screen.
 
-use glam::{DVec2, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 use super::coverage::{between, coverage, parts, pixel_length, rise};
-use super::joint::{Joint, paint};
+use super::joint::Joint;
 use super::projection::{Point, Projection};
 use super::{Fragment, Strands};
 
@@ -15,8 +15,6 @@ struct Corner {
     nearness: f64,
     /// What attributes interpolate with.
     weight: f64,
-    /// Colour and opacity of the surface.
-    color: DVec4,
     joint: Joint,
 }
 
@@ -25,11 +23,19 @@ pub(super) struct Ribbon {
     ends: [Corner; 2],
     delta: DVec2,
     normal: DVec2,
+    /// Colour and opacity at the ends of the segment.
+    paints: [DVec4; 2],
+    /// Where the corners are on the segment, 0 to 1.
+    parts: [f64; 2],
+    /// By how much of the segment the surface is farther along it than the axis, for each pixel by which it rises.
+    slant: f64,
 }
 
 impl Ribbon {
     /// The square of a length in pixels: a shorter segment has no direction.
     const SHORTEST: f64 = 1e-12;
+    /// By how much of its length a segment goes on with its colours.
+    const SURPLUS: f64 = 0.5;
 
     pub(super) fn new(
         projection: &Projection,
@@ -43,7 +49,7 @@ impl Ribbon {
             return None;
         }
         let radii = vertices.map(|vertex| strands.radius(strand, vertex));
-        let paints = vertices.map(|vertex| paint(projection, strands, colors, strand, vertex));
+        let paints = vertices.map(|vertex| colors[strands.index(strand, vertex)]);
         let whole = vertices.map(|vertex| projection.point(strands.point(strand, vertex)));
         let parts = projection.visible(&whole)?;
         let points: [Point; 2] = parts.map(|t| projection.point(whole[0].world.lerp(whole[1].world, t)));
@@ -65,10 +71,17 @@ impl Ribbon {
             half_width: projection.half_width(&points[end], radii[0] + (radii[1] - radii[0]) * parts[end], normal),
             nearness: projection.nearness(&points[end]),
             weight: Projection::weight(&points[end]),
-            color: paints[0].lerp(paints[1], parts[end]),
             joint: joints[end],
         };
-        Some(Self { first_vertex: strands.number(strand, vertex), ends: [corner(0), corner(1)], delta, normal })
+        Some(Self {
+            first_vertex: strands.number(strand, vertex),
+            ends: [corner(0), corner(1)],
+            delta,
+            normal,
+            paints,
+            parts,
+            slant: slant(projection, &points, normal) * (parts[1] - parts[0]),
+        })
     }
 
     pub(super) fn walk(
@@ -105,22 +118,36 @@ impl Ribbon {
         let place = (at.x / length).clamp(0.0, 1.0);
         let mix = |a: f64, b: f64| a + (b - a) * place;
         let half_width = mix(a.half_width, b.half_width);
+        let rise = rise(at.y, half_width);
         let mut covered = coverage(at.y, half_width, self.normal);
         if a.joint.is_sharp() || b.joint.is_sharp() {
-            let rise = rise(at.y, half_width);
             let whole = pixel_length(self.normal);
             let has_joint = [a, b].iter().any(|end| end.joint != Joint::Round);
             let pixel = if has_joint { (2.0 * (length + rise)).clamp(0.5, whole) } else { whole };
             covered *= between(at.x + rise + a.joint.slack(), length - at.x + rise + b.joint.slack(), pixel);
         }
-        let color = a.color.lerp(b.color, place * b.weight / mix(a.weight, b.weight));
+        let along = place * b.weight / mix(a.weight, b.weight);
+        let axis = self.parts[0] + (self.parts[1] - self.parts[0]) * along;
+        let surface = (axis + rise * self.slant).clamp(-Self::SURPLUS, 1.0 + Self::SURPLUS);
+        let paint = |at: f64| self.paints[0].lerp(self.paints[1], at);
+        let (color, opacity) = (paint(surface).truncate().max(DVec3::ZERO), paint(axis).w);
         Some(Fragment {
             pixel,
             segment: self.first_vertex,
             nearness: mix(a.nearness, b.nearness),
-            color: color.truncate(),
-            alpha: (covered * color.w).clamp(0.0, 1.0),
-            parts: (parts(at.y, half_width, self.normal, covered.min(1.0)) * color.w).clamp(DVec4::ZERO, DVec4::ONE),
+            color,
+            alpha: (covered * opacity).clamp(0.0, 1.0),
+            parts: (parts(at.y, half_width, self.normal, covered.min(1.0)) * opacity).clamp(DVec4::ZERO, DVec4::ONE),
         })
     }
+}
+
+/// By how much of its length the surface of a round segment is farther along it than its axis, for each pixel by which it rises: the
+/// cotangent of the angle between it and the ray through its middle on the screen, over its length.
+fn slant(projection: &Projection, ends: &[Point; 2], normal: DVec2) -> f64 {
+    let [near, far] = [0, 1].map(|end| Projection::weight(&ends[end]));
+    let middle = ends[0].world.lerp(ends[1].world, far / (near + far));
+    let (axis, ray) = (ends[1].world - ends[0].world, projection.towards_eye(middle));
+    let pixels = projection.half_width(&projection.point(middle), 1.0, normal);
+    axis.dot(ray) / (axis.cross(ray).length() * axis.length() * pixels).max(1e-30)
 }
