@@ -103,9 +103,10 @@ fn colours_are_those_of_the_surface() {
         m.base_color = Vec3::new(0.6, 0.08, 0.08);
         m.tip_color = Vec3::new(0.08, 0.08, 0.6);
     });
-    for slope in [-3.0, -1.0, 1.0, 3.0] {
-        let strand = (0..4).map(|i| (i as f32 - 1.5) * 0.12 * Vec3::new(1.0, 0.3, slope)).collect();
-        let (area, difference) = against_truth(&format!("slope {slope}"), &mut screen, &Groom::new(&[strand], look));
+    for (slope, aside) in [(-3.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (3.0, 0.0)] {
+        let at = |i: i32| aside * Vec3::X + (i as f32 - 1.5) * 0.12 * Vec3::new(1.0, 0.3, slope);
+        let groom = Groom::new(&[(0..4).map(at).collect()], look);
+        let (area, difference) = against_truth(&format!("slope {slope}, {aside} aside"), &mut screen, &groom);
         assert!(area.abs() < 0.004 && difference.psnr > 40.0, "{area} {difference:?}");
     }
 }

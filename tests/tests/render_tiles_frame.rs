@@ -22,8 +22,8 @@ fn sections_are_sorted_against_each_other() {
     let Some(mut screen) = screen(endless) else { return };
     let (picture, exact) = (screen.hair(&grooms), screen.exact(&grooms));
     let difference = picture.difference(&exact);
-    // Colours above 1 are kept as half floats, 0.001 apart.
-    assert!(difference.max < 0.002 && difference.psnr > 82.0, "{difference:?}");
+    // Colours above 2 are kept as half floats, 0.002 apart.
+    assert!(difference.max < 0.0025 && difference.psnr > 82.0, "{difference:?}");
     let apart: Vec<_> = grooms.iter().map(|groom| screen.hair(&[groom]).pixels()).collect();
     let one_by_one = apart.into_iter().reduce(|below, above| {
         below.iter().zip(above).map(|(below, above)| above + *below * (1.0 - above.w)).collect()

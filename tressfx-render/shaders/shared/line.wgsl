@@ -18,6 +18,9 @@ struct Paint {
 // The surface may be of the segments before and behind, whose colours are not known here: up to this share of its length a segment goes on as
 // it is.
 const SURPLUS: f32 = 0.5;
+// Half a width in pixels, and how high the surface of a fibre rises before its axis in the mean, in radii.
+const THIN: f32 = 0.5;
+const MEAN_RISE: f32 = 0.785398;
 // The square of a length in pixels: a shorter segment has no direction.
 const SHORTEST: f32 = 1e-12;
 // The largest number below 1.
@@ -83,22 +86,37 @@ fn pixel_length(ribbon: Ribbon, line: Line, owned: f32) -> f32 {
     return select(whole, clamp(2.0 * owned, SHORTEST_PIXEL, whole), has_joint);
 }
 
-// What the ribbon leaves in a pixel at `place` along it, wherever the scene is.
+// What the ribbon leaves in a pixel at `place` along it, wherever the scene is. Its colour is that of the surface that the pixel sees.
 fn fragment_on(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
+    // Of a thin fibre a pixel sees all of its width.
+    var rise = MEAN_RISE * half_width;
+    if half_width > THIN {
+        rise = rise_of(beside(ribbon, line, pixel).y, half_width);
+    }
+    let surface = along(ribbon, place) + rise * slant_of(view.lens, ribbon);
+    return fragment_showing(ribbon, line, paint, pixel, place, clamp(surface, -SURPLUS, 1.0 + SURPLUS));
+}
+
+// The same with the colour of the axis.
+fn fragment_of_axis(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
+    return fragment_showing(ribbon, line, paint, pixel, place, along(ribbon, place));
+}
+
+// What the ribbon leaves in a pixel at `place` along it, with the colour that the segment has at `shown`.
+fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32, shown: f32) -> Fragment {
+    let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
     let at = beside(ribbon, line, pixel);
-    let rise = rise_of(at.y, half_width);
     var covered = coverage(at.y, half_width, line.reach);
     // Most segments go straight on at both ends.
     if any(is_sharp(ribbon)) {
         let length = sqrt(line.square);
+        let rise = rise_of(at.y, half_width);
         let ends = rise + slack_of(ribbon);
         covered *= between(at.x + ends.x, length - at.x + ends.y, pixel_length(ribbon, line, length + rise));
     }
-    let axis = along(ribbon, place);
-    let surface = clamp(axis + rise * slant_of(view.lens, ribbon), -SURPLUS, 1.0 + SURPLUS);
-    let color = max(mix(paint.start.rgb, paint.end.rgb, surface), vec3(0.0));
-    let opacity = mix(paint.start.a, paint.end.a, axis);
+    let color = max(mix(paint.start.rgb, paint.end.rgb, shown), vec3(0.0));
+    let opacity = mix(paint.start.a, paint.end.a, along(ribbon, place));
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
     let alpha = u32(round(saturate(covered * opacity) * OPAQUE));
     @if(!places) { return Fragment(color, nearness, alpha); }

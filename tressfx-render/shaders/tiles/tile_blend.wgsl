@@ -11,7 +11,7 @@ import package::entries::{
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
-import package::line::{fragment_on, is_drawn, line_of, place_of, span_of};
+import package::line::{fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
 import package::screen::{scene_nearness, view};
@@ -156,7 +156,8 @@ fn find(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32
         }
         *found = vec2(min((*found).x, key), max((*found).y, key));
         if unit.is_mean == 1u {
-            add_to_mean(own, fragment_on(ribbon, line, paint_of(start), pixel, place));
+            // Colours of the surface would take registers from all that this kernel does.
+            add_to_mean(own, fragment_of_axis(ribbon, line, paint_of(start), pixel, place));
         } else {
             add(own, key, start);
         }

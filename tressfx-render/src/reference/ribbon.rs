@@ -1,5 +1,7 @@
 //! A segment of a strand on the screen.
 
+use std::f64::consts::FRAC_PI_4;
+
 use glam::{DVec2, DVec3, DVec4};
 
 use super::coverage::{between, coverage, parts, pixel_length, rise};
@@ -36,6 +38,8 @@ impl Ribbon {
     const SHORTEST: f64 = 1e-12;
     /// By how much of its length a segment goes on with its colours.
     const SURPLUS: f64 = 0.5;
+    /// Half a width in pixels up to which a pixel sees all of a fibre.
+    const THIN: f64 = 0.5;
 
     pub(super) fn new(
         projection: &Projection,
@@ -118,9 +122,9 @@ impl Ribbon {
         let place = (at.x / length).clamp(0.0, 1.0);
         let mix = |a: f64, b: f64| a + (b - a) * place;
         let half_width = mix(a.half_width, b.half_width);
-        let rise = rise(at.y, half_width);
         let mut covered = coverage(at.y, half_width, self.normal);
         if a.joint.is_sharp() || b.joint.is_sharp() {
+            let rise = rise(at.y, half_width);
             let whole = pixel_length(self.normal);
             let has_joint = [a, b].iter().any(|end| end.joint != Joint::Round);
             let pixel = if has_joint { (2.0 * (length + rise)).clamp(0.5, whole) } else { whole };
@@ -128,7 +132,8 @@ impl Ribbon {
         }
         let along = place * b.weight / mix(a.weight, b.weight);
         let axis = self.parts[0] + (self.parts[1] - self.parts[0]) * along;
-        let surface = (axis + rise * self.slant).clamp(-Self::SURPLUS, 1.0 + Self::SURPLUS);
+        let seen = if half_width > Self::THIN { rise(at.y, half_width) } else { FRAC_PI_4 * half_width };
+        let surface = (axis + seen * self.slant).clamp(-Self::SURPLUS, 1.0 + Self::SURPLUS);
         let paint = |at: f64| self.paints[0].lerp(self.paints[1], at);
         let (color, opacity) = (paint(surface).truncate().max(DVec3::ZERO), paint(axis).w);
         Some(Fragment {
