@@ -190,7 +190,9 @@ fn covered_area_follows_the_map_of_density() {
         let part = part_of(index % WIDTH);
         if (0.0..9.0).contains(&part) {
             let x = (index % WIDTH) as f64 + 0.5 - WIDTH as f64 / 2.0;
-            densities[part as usize] += 0.25 + 0.375 * (1.0 + x / f64::from(pixels_per_unit) + middle);
+            // Away from the middle a strand that hangs is seen wider: from its side, and in pixels that are seen from theirs.
+            let wider = 1f64.hypot(x / f64::from(screen.view.lens().focal.x));
+            densities[part as usize] += wider * (0.25 + 0.375 * (1.0 + x / f64::from(pixels_per_unit) + middle));
             areas[part as usize] -= if *depth < 0.0 { 0.0 } else { (1.0 - f64::from(*coverage)).ln() };
         }
     }

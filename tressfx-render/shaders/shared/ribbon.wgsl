@@ -43,13 +43,17 @@ fn off_screen(lens: LensUniform, pixels: vec2<f32>) -> vec2<f32> {
     return vec2(right, -(pixels.y + lens.skew * right) / lens.focal.y);
 }
 
-// Pixels of half a unit of width at w 1, across a line on the screen.
-fn width_scale(lens: LensUniform, delta: vec2<f32>) -> f32 {
+// Pixels of half a unit of width at w 1, across a line on the screen through a point. What is seen of a fibre are the lines in which planes
+// through the eye touch it: away from the centre they are farther apart than the fibre is wide.
+fn width_scale(lens: LensUniform, at: vec2<f32>, delta: vec2<f32>) -> f32 {
+    let from_center = at - lens.center;
+    let square = max(dot(delta, delta), 1e-20);
+    let moment = f32(lens.is_perspective) * (delta.x * from_center.y - delta.y * from_center.x);
     if lens.even_focal > 0.0 {
-        return lens.even_focal;
+        return sqrt(lens.even_focal * lens.even_focal + moment * moment / square);
     }
-    let normal = vec2(-delta.y, delta.x) * inverseSqrt(max(dot(delta, delta), 1e-20));
-    return length(vec2(lens.focal.x * normal.x - lens.skew * normal.y, lens.focal.y * normal.y));
+    let across = vec2(lens.focal.x * delta.y + lens.skew * delta.x, lens.focal.y * delta.x);
+    return sqrt((dot(across, across) + moment * moment) / square);
 }
 
 // Cuts off what is nearer than the near plane, and projects.
@@ -71,7 +75,7 @@ fn project(a: End, b: End, lens: LensUniform) -> Ribbon {
     }
     ribbon.start = on_screen(lens, mix(a.point.xy, b.point.xy, part.x), scale.x);
     ribbon.end = on_screen(lens, mix(a.point.xy, b.point.xy, part.y), scale.y);
-    let width = width_scale(lens, ribbon.end - ribbon.start);
+    let width = width_scale(lens, ribbon.start, ribbon.end - ribbon.start);
     ribbon.half_width = mix(vec2(a.radius), vec2(b.radius), part) * (width * scale);
     ribbon.part = part;
     ribbon.scale = scale;
@@ -104,7 +108,7 @@ fn along(ribbon: Ribbon, t: f32) -> f32 {
 // segment and the ray through its middle, over the length of the segment.
 fn slant_of(lens: LensUniform, ribbon: Ribbon) -> f32 {
     var across = ribbon.end - ribbon.start;
-    let focal = width_scale(lens, across);
+    let focal = abs(lens.focal.x);
     var ray = (lens.center - 0.5 * (ribbon.start + ribbon.end)) / focal;
     if lens.even_focal == 0.0 {
         across = focal * off_screen(lens, across);
@@ -124,7 +128,8 @@ fn slant_of(lens: LensUniform, ribbon: Ribbon) -> f32 {
     let along = dot(across, ray);
     let ahead = towards * (1.0 + dot(ray, ray));
     let lengths = (square + beside * beside) * (square + towards * (2.0 * along + ahead));
-    return (along + ahead) * (ribbon.part.y - ribbon.part.x) * inverseSqrt(max(lengths, 1e-30));
+    let share = focal * (ribbon.part.y - ribbon.part.x) / width_scale(lens, ribbon.start, ribbon.end - ribbon.start);
+    return (along + ahead) * share * inverseSqrt(max(lengths, 1e-30));
 }
 
 // Cuts off what is further than `margin` outside the image, so that coordinates stay small.

@@ -78,7 +78,7 @@ fn ribbon_of(start: u32) -> Ribbon {
     let is_beyond = vec2(a.is_beyond, b.is_beyond);
     if !any(is_beyond) && all(max(abs(a.point.xy), abs(b.point.xy)) < vec2(LARGEST_PIXEL)) {
         let nearness = vec2(a.point.z, b.point.z);
-        let half_width = vec2(a.radius, b.radius) * width_scale(view.lens, b.point.xy - a.point.xy);
+        let half_width = vec2(a.radius, b.radius) * width_scale(view.lens, a.point.xy, b.point.xy - a.point.xy);
         return Ribbon(a.point.xy, b.point.xy, half_width, nearness, vec2(0.0, 1.0), scale_of(view.lens, nearness), tilt, true);
     }
     var ribbon = project(end_of(a), end_of(b), view.lens);

@@ -96,7 +96,8 @@ fn note_nearest(point: vec4<f32>) {
 
 // Pixels beside the line between two points within which a segment may leave fragments, its ends and turns included.
 fn margin_between(a: vec4<f32>, b: vec4<f32>) -> f32 {
-    let focal = abs(view.lens.focal.x) + abs(view.lens.focal.y) + abs(view.lens.skew);
+    let from_center = max(abs(a.xy - view.lens.center), abs(b.xy - view.lens.center));
+    let focal = abs(view.lens.focal.x) + abs(view.lens.focal.y) + abs(view.lens.skew) + from_center.x + from_center.y;
     return 1.5 * (max(a.w, b.w) * focal + 1.0) + 1.0;
 }
 

@@ -10,8 +10,8 @@ pub(super) struct Projection {
     clip: DMat4,
     order: DepthOrder,
     pub(super) size: [u32; 2],
-    /// Two perpendicular unit directions that face the eye.
-    across: [DVec3; 2],
+    /// Three perpendicular unit directions; the last one leads away from the eye.
+    axes: [DVec3; 3],
     /// Position of the eye and 1, or the direction towards it and 0.
     eye: DVec4,
 }
@@ -37,7 +37,7 @@ impl Projection {
             (false, DepthOrder::Standard) => -meeting,
             (false, DepthOrder::Reverse) => meeting,
         };
-        Self { clip, order: view.depth(), size: view.size(), across: [across.0, across.1], eye }
+        Self { clip, order: view.depth(), size: view.size(), axes: [across.0, across.1, forward], eye }
     }
 
     /// The same picture with more pixels.
@@ -75,14 +75,17 @@ impl Projection {
         0.5 * size * DVec2::new(1.0 + ndc.x, 1.0 - ndc.y)
     }
 
-    /// Half the width in pixels, along the unit direction `normal`, of a disc that faces the eye.
+    /// Half the width in pixels, along the unit direction `normal`, of a fibre that runs across it: the planes through the eye that touch the
+    /// fibre do so where a step of its radius is seen as largest along `normal`.
     pub(super) fn half_width(&self, point: &Point, radius: f64, normal: DVec2) -> f64 {
+        /// The share of the radius that stands for all of it, so that what is seen is linear.
+        const STEP: f64 = 1e-4;
         let middle = self.pixel(point);
-        let reach = self.across.map(|side| {
-            let edge = self.point(point.world + radius * side);
-            (self.pixel(&edge) - middle).dot(normal)
+        let reach = self.axes.map(|axis| {
+            let edge = self.point(point.world + STEP * radius * axis);
+            (self.pixel(&edge) - middle).dot(normal) / STEP
         });
-        reach[0].hypot(reach[1])
+        DVec3::from_array(reach).length()
     }
 
     /// What depth interpolates with: 1 / w.
