@@ -15,9 +15,9 @@ struct GuideRoot { rotation: vec4<f32>, place: vec4<f32>, last_rotation: vec4<f3
 @group(0) @binding(1) var<storage, read> targets: array<RootTransform>;
 /// At the ends of the last frames, in turns.
 @group(0) @binding(2) var<storage, read> places_0: array<RootTransform>;
-@group(0) @binding(4) var<storage, read> places_1: array<RootTransform>;
-@group(0) @binding(5) var<storage, read> places_2: array<RootTransform>;
-@group(0) @binding(3) var<storage, read_write> guide_roots: array<GuideRoot>;
+@group(0) @binding(3) var<storage, read> places_1: array<RootTransform>;
+@group(0) @binding(4) var<storage, read> places_2: array<RootTransform>;
+@group(0) @binding(5) var<storage, read_write> guide_roots: array<GuideRoot>;
 
 /// The farthest that the curve may lead from the straight line between two unit quaternions.
 const TURN_SLACK: f32 = 0.25;
