@@ -114,21 +114,25 @@ fn slant_of(lens: LensUniform, ribbon: Ribbon) -> f32 {
         across = focal * off_screen(lens, across);
         ray = off_screen(lens, focal * ray);
     }
-    // By how much the segment leads towards the eye. All lengths are in pixels of its middle.
-    var towards = focal * (ribbon.nearness.y - ribbon.nearness.x);
+    // By how much the segment leads towards the eye. All lengths are in pixels of the mean distance of its ends, which in a perspective are
+    // larger than those of its middle on the screen.
+    var nearer = ribbon.nearness.y - ribbon.nearness.x;
+    var larger = 1.0;
     if lens.is_perspective == 1u {
-        towards *= 2.0 / max(ribbon.nearness.x + ribbon.nearness.y, 1e-30);
+        nearer *= 2.0 / max(ribbon.nearness.x + ribbon.nearness.y, 1e-30);
+        larger = 1.0 - 0.25 * nearer * nearer;
     } else {
-        towards /= lens.nearness_slope;
+        nearer /= lens.nearness_slope;
         ray = vec2(0.0);
     }
+    let towards = focal * nearer;
     // The segment is `vec3(across, 0) + towards * vec3(ray, 1)`.
     let square = dot(across, across);
     let beside = across.x * ray.y - across.y * ray.x;
     let along = dot(across, ray);
     let ahead = towards * (1.0 + dot(ray, ray));
     let lengths = (square + beside * beside) * (square + towards * (2.0 * along + ahead));
-    let share = focal * (ribbon.part.y - ribbon.part.x) / width_scale(lens, ribbon.start, ribbon.end - ribbon.start);
+    let share = larger * focal * (ribbon.part.y - ribbon.part.x) / width_scale(lens, ribbon.start, ribbon.end - ribbon.start);
     return (along + ahead) * share * inverseSqrt(max(lengths, 1e-30));
 }
 
