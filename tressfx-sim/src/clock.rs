@@ -188,7 +188,7 @@ impl Clock {
         if count > 0 {
             self.last_sub_step = length;
         }
-        self.root_frames = if dropped == 0.0 { [Some(dt), self.root_frames[0]] } else { [None; 2] };
+        self.end_root_frame(dt, dropped == 0.0);
         if let Some([last, _]) = self.still.filter(|_| dt > 0.0 && dropped == 0.0) {
             self.still = Some([dt, last]);
         } else {
@@ -260,7 +260,6 @@ impl Clock {
     /// there are. Where strands were reset in it, roots are where they are at its end.
     fn move_roots(&mut self, dt: f64, frame: &mut FramePlan) {
         let simulated = dt - frame.dropped;
-        let is_one_way = frame.reset.is_none() && frame.dropped == 0.0;
         if frame.reset.is_none() {
             let before = self.root_frames.map(|length| length.map(|length| length / simulated).filter(are_alike));
             for sub_step in frame.sub_steps.iter_mut().filter(|sub_step| sub_step.shares[1] < END) {
@@ -268,6 +267,11 @@ impl Clock {
                 sub_step.roots = RootPath { share, bend: bend(before, share), frame: simulated };
             }
         }
+        self.end_root_frame(dt, frame.reset.is_none() && frame.dropped == 0.0);
+    }
+
+    /// A frame of this length ends; whether roots were on one way in it, and in those before.
+    fn end_root_frame(&mut self, dt: f64, is_one_way: bool) {
         self.root_frames = if is_one_way { [Some(dt), self.root_frames[0]] } else { [None; 2] };
     }
 
