@@ -25,8 +25,8 @@ impl Shader {
     /// The entry point of one stage as SPIR-V words, under its WGSL name. Bindings lie in descriptor set 0 under their WGSL
     /// numbers.
     ///
-    /// The clip space is WebGPU's, y up: turn it with a viewport of negative height. Group memory is not zeroed and loops
-    /// are not bounded; the library's kernels need neither.
+    /// The clip space is WebGPU's, y up: turn it with a viewport of negative height. Group memory is not zeroed, loops are not
+    /// bounded, and indices into group memory and into arrays of a function are not checked; the library's kernels need none of it.
     ///
     /// # Errors
     /// [`Error::Shader`](crate::Error::Shader) if there is no such entry point, or with what naga says.
@@ -38,7 +38,7 @@ impl Shader {
             lang_version: options.version,
             flags,
             bounds_check_policies: BoundsCheckPolicies {
-                index: BoundsCheckPolicy::Restrict,
+                index: BoundsCheckPolicy::Unchecked,
                 buffer: checked(options.robust_buffers),
                 image_load: checked(options.robust_textures),
                 binding_array: BoundsCheckPolicy::Unchecked,

@@ -3,22 +3,16 @@
 import package::fragment::{Fragment, pack_color};
 import package::quarter::PIXELS;
 import package::tiles::VERTEX_MASK;
-import package::unit::ENTRIES;
+import package::unit::{ENTRIES, ENTRIES_OF_A_LANE, LANES};
 
-const LANES: u32 = 192u;
-// Entries that a lane puts into the order of pixels.
-const ENTRIES_OF_A_LANE: u32 = ENTRIES / LANES;
 // A source: the first vertex of the segment that leaves the fragment, and above it the pixel.
 const PIXEL_SHIFT: u32 = countOneBits(VERTEX_MASK);
 
 // Fragments that were found in the unit, whether or not there was room for them.
 var<workgroup> total: atomic<u32>;
-// Depth and source, as they are found, then in the order of pixels.
-var<workgroup> keys: array<u32, ENTRIES>;
-var<workgroup> sources: array<u32, ENTRIES>;
-// While fragments are found, first vertices of segments that touch the quarter. Then both words of the colours, in the order of pixels
+// Depth and source, as they are found, then in the order of pixels. When all are painted, both words of their colours, in the order of pixels
 // and depth.
-var<workgroup> scratch: array<u32, 2u * ENTRIES>;
+var<workgroup> words: array<array<u32, ENTRIES>, 2>;
 // Opacities at the places of the pixel, 16 bits each, in the same order.
 @if(places)
 var<workgroup> parts: array<vec2<u32>, ENTRIES>;
@@ -51,8 +45,8 @@ fn empty(lane: u32) {
 fn add(pixel: u32, key: u32, start: u32) {
     let entry = atomicAdd(&total, 1u);
     if entry < ENTRIES {
-        keys[entry] = key;
-        sources[entry] = (pixel << PIXEL_SHIFT) | start;
+        words[0][entry] = key;
+        words[1][entry] = (pixel << PIXEL_SHIFT) | start;
         atomicAdd(&counts[pixel], 1u);
     }
 }
@@ -72,14 +66,14 @@ fn pixel_of(entry: Entry) -> u32 {
 }
 
 fn entry_at(place: u32) -> Entry {
-    return Entry(keys[place], sources[place]);
+    return Entry(words[0][place], words[1][place]);
 }
 
 fn put(entry: Entry) {
     let pixel = pixel_of(entry);
     let place = starts[pixel] + atomicSub(&counts[pixel], 1u) - 1u;
-    keys[place] = entry.key;
-    sources[place] = entry.source;
+    words[0][place] = entry.key;
+    words[1][place] = entry.source;
 }
 
 // Puts entries into the order of pixels. All lanes come here.
@@ -122,8 +116,8 @@ fn rank_of(entry: Entry, place: u32) -> Rank {
     let pixel = pixel_of(entry);
     var rank = Rank(starts[pixel], 0u, 0u);
     for (var i = starts[pixel]; i < starts[pixel + 1u]; i++) {
-        rank.first += u32(keys[i] < entry.key);
-        if keys[i] == entry.key {
+        rank.first += u32(words[0][i] < entry.key);
+        if words[0][i] == entry.key {
             rank.same += 1u;
             rank.own += u32(i < place);
         }
@@ -132,80 +126,126 @@ fn rank_of(entry: Entry, place: u32) -> Rank {
     return rank;
 }
 
-fn paint(entry: Entry, place: u32, fragment: Fragment) {
+// A fragment that is painted, until all are and its colour may take its place.
+struct Painted {
+    color: vec2<u32>,
+    // `pack_rank`, or NO_RANK where a lane has no fragment.
+    rank: u32,
+}
+
+const NO_RANK: u32 = 0xffffffffu;
+// Bits of a place in a rank: none is above ENTRIES.
+const PLACE_BITS: u32 = 10u;
+
+fn pack_rank(rank: Rank) -> u32 {
+    return rank.first | (rank.own << PLACE_BITS) | (rank.same << (2u * PLACE_BITS));
+}
+
+fn unpack_rank(packed: u32) -> Rank {
+    return Rank(extractBits(packed, 0u, PLACE_BITS), extractBits(packed, PLACE_BITS, PLACE_BITS), extractBits(packed, 2u * PLACE_BITS, PLACE_BITS));
+}
+
+// What is not of the colour goes to its place at once.
+fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
     let rank = rank_of(entry, place);
     if rank.same > 1u {
         atomicStore(&has_ties, 1u);
     }
-    let color = pack_color(fragment);
-    scratch[rank.own] = color.x;
-    scratch[ENTRIES + rank.own] = color.y;
     @if(places) { parts[rank.own] = vec2(pack2x16unorm(fragment.parts.xy), pack2x16unorm(fragment.parts.zw)); }
     @if(hair_output) { sorted_keys[rank.own] = entry.key; }
+    return Painted(pack_color(fragment), pack_rank(rank));
 }
 
-// A fragment that is painted.
-struct Painted {
-    color: vec2<u32>,
-    @if(places)
-    parts: vec2<u32>,
-    place: u32,
+// What a lane has painted of a unit, the last one first. (Not an array: it would stay in registers only where loops over it are unrolled.)
+struct OwnPainted {
+    first: Painted,
+    second: Painted,
+    third: Painted,
 }
 
-fn painted_at(place: u32) -> Painted {
-    @if(!places) { return Painted(color_at(place), place); }
-    @if(places) { return Painted(color_at(place), parts[place], place); }
+fn none_painted() -> OwnPainted {
+    let none = Painted(vec2(0u), NO_RANK);
+    return OwnPainted(none, none, none);
+}
+
+// Up to ENTRIES_OF_A_LANE are kept.
+fn with_one_more(own: OwnPainted, next: Painted) -> OwnPainted {
+    return OwnPainted(next, own.first, own.second);
+}
+
+// A place for nothing is none.
+fn put_color(color: vec2<u32>, place: u32) {
+    if place < ENTRIES {
+        words[0][place] = color.x;
+        words[1][place] = color.y;
+    }
+}
+
+// Colours take the place of depths and sources, which all lanes have read by then.
+fn put_colors(own: OwnPainted) {
+    put_color(own.first.color, unpack_rank(own.first.rank).own);
+    put_color(own.second.color, unpack_rank(own.second.rank).own);
+    put_color(own.third.color, unpack_rank(own.third.rank).own);
 }
 
 fn is_less(a: vec2<u32>, b: vec2<u32>, if_same: bool) -> bool {
     return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && if_same)));
 }
 
-// Whether the first of two of one depth comes first. What is the same gives the same picture in any order.
-fn is_before(a: Painted, b: Painted) -> bool {
+// Whether what was painted at the first of two places of one depth comes first. What is the same gives the same picture in any order.
+fn is_before(a: u32, b: u32) -> bool {
     @if(places) {
-        if all(a.color == b.color) {
-            return is_less(a.parts, b.parts, a.place < b.place);
+        if all(color_at(a) == color_at(b)) {
+            return is_less(parts[a], parts[b], a < b);
         }
     }
-    return is_less(a.color, b.color, a.place < b.place);
+    return is_less(color_at(a), color_at(b), a < b);
 }
 
-// The entry at a place in the order of pixels as it is painted, with its place by depth and colour.
-fn by_color(place: u32) -> Painted {
-    let rank = rank_of(entry_at(place), place);
-    var painted = painted_at(rank.own);
+// The place of a fragment by depth and colour.
+fn place_by_color(painted: Painted) -> u32 {
+    let rank = unpack_rank(painted.rank);
+    if rank.own >= ENTRIES {
+        return rank.own;
+    }
     var own = rank.first;
     for (var i = rank.first; i < rank.first + rank.same; i++) {
-        own += u32(is_before(painted_at(i), painted));
+        own += u32(is_before(i, rank.own));
     }
-    painted.place = own;
-    return painted;
+    return own;
+}
+
+@if(places)
+fn parts_of(painted: Painted) -> vec2<u32> {
+    return parts[min(unpack_rank(painted.rank).own, ENTRIES - 1u)];
 }
 
 // Puts those of one depth into the order of their colours: that in which they were put is not that of every run. All lanes come here.
-fn settle_ties(count: u32, lane: u32) {
-    var own_colors: array<vec2<u32>, ENTRIES_OF_A_LANE>;
+fn settle_ties(own: OwnPainted) {
+    let places = vec3(place_by_color(own.first), place_by_color(own.second), place_by_color(own.third));
     @if(places)
-    var own_parts: array<vec2<u32>, ENTRIES_OF_A_LANE>;
-    var own_places: array<u32, ENTRIES_OF_A_LANE>;
-    for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
-        if lane + i * LANES < count {
-            let painted = by_color(lane + i * LANES);
-            own_colors[i] = painted.color;
-            @if(places) { own_parts[i] = painted.parts; }
-            own_places[i] = painted.place;
-        }
+    let first_parts = parts_of(own.first);
+    @if(places)
+    let second_parts = parts_of(own.second);
+    @if(places)
+    let third_parts = parts_of(own.third);
+    workgroupBarrier();
+    put_color(own.first.color, places.x);
+    put_color(own.second.color, places.y);
+    put_color(own.third.color, places.z);
+    @if(places) {
+        put_parts(first_parts, places.x);
+        put_parts(second_parts, places.y);
+        put_parts(third_parts, places.z);
     }
     workgroupBarrier();
-    for (var i = 0u; i < ENTRIES_OF_A_LANE; i++) {
-        if lane + i * LANES < count {
-            scratch[own_places[i]] = own_colors[i].x;
-            scratch[ENTRIES + own_places[i]] = own_colors[i].y;
-            @if(places) { parts[own_places[i]] = own_parts[i]; }
-        }
+}
+
+@if(places)
+fn put_parts(own: vec2<u32>, place: u32) {
+    if place < ENTRIES {
+        parts[place] = own;
     }
-    workgroupBarrier();
 }
 
 // The places of a pixel's entries: the first, and the one after the last.
@@ -215,7 +255,7 @@ fn places_of(pixel: u32) -> vec2<u32> {
 
 // The colour at a place.
 fn color_at(place: u32) -> vec2<u32> {
-    return vec2(scratch[place], scratch[ENTRIES + place]);
+    return vec2(words[0][place], words[1][place]);
 }
 
 // The opacities at a place.

@@ -7,13 +7,15 @@
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
 import package::entries::{
-    LANES, add, color_at, empty, ends, entry_at, gather, has_ties, paint, pixel_of, places_of, scratch, settle_ties, start_of, total,
+    Painted, add, color_at, empty, ends, entry_at, gather, has_ties, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
+    total, with_one_more,
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
-import package::line::{fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
+import package::line::{Line, fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
+import package::ribbon::Ribbon;
 import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
@@ -21,7 +23,7 @@ import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
     WaitingTiles, begin_of, groups_of_a_tile, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
 };
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
+import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
 @if(places)
 import package::entries::parts_at;
@@ -68,6 +70,8 @@ struct Job {
 
 var<workgroup> job: Job;
 var<workgroup> plan: Unit;
+// First vertices of segments that touch the quarter.
+var<workgroup> hits: array<u32, LANES * LOOKS>;
 var<workgroup> hit_count: atomic<u32>;
 // Nearness of the scene.
 var<workgroup> scene: array<f32, PIXELS>;
@@ -131,35 +135,61 @@ fn key_of(nearness: f32) -> u32 {
     return min(depth_key(nearness), LAST_KEY - 1u);
 }
 
-// What a segment leaves in the quarter. Keys that are found are between the nearest and the farthest of them.
-fn find(unit: Unit, corner: vec2<u32>, start: u32, found: ptr<function, vec2<u32>>) {
-    let ribbon = ribbon_of(start);
-    let line = line_of(ribbon);
+// The pixels of a quarter that are the share of one of two or of four lanes, a bit each; all where a lane is alone. Of a row, a column and
+// a slanted line all have about as many.
+fn share_of(number: u32, sharing: u32) -> u32 {
+    let fourth = 0x12481248u >> (QUARTER * number);
+    return select(select(fourth, fourth | (fourth >> 8u), sharing == 2u), 0xffffu, sharing == 1u);
+}
+
+// The pixels of the quarter, a bit each, in which a segment may leave fragments in a unit.
+fn pixels_in(unit: Unit, corner: vec2<u32>, ribbon: Ribbon, line: Line) -> u32 {
     let nearest = depth_key(max(ribbon.nearness.x, ribbon.nearness.y));
     let farthest = depth_key(min(ribbon.nearness.x, ribbon.nearness.y));
     // Rounding may move a fragment out of the range of its ends by a few keys.
     if !is_drawn(ribbon, line) || farthest + min(KEYS, LAST_KEY - farthest) < unit.low || nearest - min(KEYS, nearest) >= unit.high {
-        return;
+        return 0u;
     }
-    let left = touched(span_of(ribbon, line), corner) & atomicLoad(&open);
-    if left == 0u {
-        return;
-    }
-    for (var rest = left; rest != 0u; rest &= rest - 1u) {
+    return touched(span_of(ribbon, line), corner) & atomicLoad(&open);
+}
+
+// Where along a ribbon the pixel is, and the key of the fragment there: LAST_KEY where it leaves none in the unit.
+struct Found {
+    place: f32,
+    key: u32,
+}
+
+fn found_at(unit: Unit, corner: vec2<u32>, ribbon: Ribbon, line: Line, own: u32) -> Found {
+    let place = place_of(ribbon, line, pixel_at(corner, own));
+    let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
+    let key = key_of(nearness);
+    let is_found = place >= 0.0 && nearness >= scene[own] && key >= unit.low && key < unit.high;
+    return Found(place, select(LAST_KEY, key, is_found));
+}
+
+// Finds what a segment leaves in some pixels of the quarter. Keys that are found are between the nearest and the farthest of them.
+fn find(unit: Unit, corner: vec2<u32>, start: u32, pixels: u32, ends_found: ptr<function, vec2<u32>>) {
+    let ribbon = ribbon_of(start);
+    let line = line_of(ribbon);
+    for (var rest = pixels_in(unit, corner, ribbon, line) & pixels; rest != 0u; rest &= rest - 1u) {
         let own = firstTrailingBit(rest);
-        let pixel = pixel_at(corner, own);
-        let place = place_of(ribbon, line, pixel);
-        let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
-        let key = key_of(nearness);
-        if place < 0.0 || nearness < scene[own] || key < unit.low || key >= unit.high {
-            continue;
-        }
-        *found = vec2(min((*found).x, key), max((*found).y, key));
-        if unit.is_mean == 1u {
-            // Colours of the surface would take registers from all that this kernel does.
-            add_to_mean(own, fragment_of_axis(ribbon, line, paint_of(start), pixel, place));
-        } else {
+        let key = found_at(unit, corner, ribbon, line, own).key;
+        if key != LAST_KEY {
+            *ends_found = vec2(min((*ends_found).x, key), max((*ends_found).y, key));
             add(own, key, start);
+        }
+    }
+}
+
+// The same where fragments are blended as their mean. (A loop of its own: this nearly never runs, and would take registers from the other.)
+fn find_mean(unit: Unit, corner: vec2<u32>, start: u32, pixels: u32) {
+    let ribbon = ribbon_of(start);
+    let line = line_of(ribbon);
+    for (var rest = pixels_in(unit, corner, ribbon, line) & pixels; rest != 0u; rest &= rest - 1u) {
+        let own = firstTrailingBit(rest);
+        let found = found_at(unit, corner, ribbon, line, own);
+        if found.key != LAST_KEY {
+            add_to_mean(own, fragment_of_axis(ribbon, line, paint_of(start), pixel_at(corner, own), found.place));
         }
     }
 }
@@ -177,7 +207,7 @@ fn is_hit(unit: Unit, quarter: u32, place: u32, reference: u32) -> bool {
 
 // Draws the segments of the unit. All lanes come here.
 fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
-    var found = vec2(LAST_KEY, 0u);
+    var ends_found = vec2(LAST_KEY, 0u);
     let end = bounds[unit.end];
     for (var chunk = bounds[max(unit.first, 1u) - 1u]; chunk < end; chunk += LANES * LOOKS) {
         var own_hits = 0u;
@@ -189,13 +219,19 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         }
         var hit = atomicAdd(&hit_count, countOneBits(own_hits));
         for (; own_hits != 0u; own_hits &= own_hits - 1u) {
-            scratch[hit] = references[chunk + firstTrailingBit(own_hits) * LANES + lane] & VERTEX_MASK;
+            hits[hit] = references[chunk + firstTrailingBit(own_hits) * LANES + lane] & VERTEX_MASK;
             hit++;
         }
         workgroupBarrier();
         let count = atomicLoad(&hit_count);
-        for (var i = lane; i < count; i += LANES) {
-            find(unit, corner, scratch[i], &found);
+        // A lane goes from pixel to pixel: where there are more lanes than segments, several share one.
+        let sharing = select(select(1u, 2u, 2u * count <= LANES), 4u, 4u * count <= LANES);
+        for (var i = lane; i < count * sharing; i += LANES) {
+            if unit.is_mean == 1u {
+                find_mean(unit, corner, hits[i / sharing], share_of(i % sharing, sharing));
+            } else {
+                find(unit, corner, hits[i / sharing], share_of(i % sharing, sharing), &ends_found);
+            }
         }
         workgroupBarrier();
         if lane == 0u {
@@ -204,23 +240,31 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         workgroupBarrier();
     }
     if atomicLoad(&total) > ENTRIES {
-        atomicMin(&ends[0], found.x);
-        atomicMax(&ends[1], found.y);
+        atomicMin(&ends[0], ends_found.x);
+        atomicMax(&ends[1], ends_found.y);
     }
+}
+
+// The colour of the fragment that was found at a place.
+fn painted_at(place: u32, corner: vec2<u32>) -> Painted {
+    let entry = entry_at(place);
+    let start = start_of(entry);
+    let ribbon = ribbon_of(start);
+    let line = line_of(ribbon);
+    let pixel = pixel_at(corner, pixel_of(entry));
+    return paint(entry, place, fragment_on(ribbon, line, paint_of(start), pixel, place_of(ribbon, line, pixel)));
 }
 
 // The colours of the fragments that were found: as many lanes have work as there are fragments. All lanes come here.
 fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
+    var own = none_painted();
     for (var place = lane; place < count; place += LANES) {
-        let entry = entry_at(place);
-        let start = start_of(entry);
-        let ribbon = ribbon_of(start);
-        let line = line_of(ribbon);
-        let pixel = pixel_at(corner, pixel_of(entry));
-        paint(entry, place, fragment_on(ribbon, line, paint_of(start), pixel, place_of(ribbon, line, pixel)));
+        own = with_one_more(own, painted_at(place, corner));
     }
+    workgroupBarrier();
+    put_colors(own);
     if workgroupUniformLoad(&has_ties) != 0u {
-        settle_ties(count, lane);
+        settle_ties(own);
     }
 }
 

@@ -52,16 +52,17 @@ fn pieces() -> Pieces {
     return Pieces(count, own, LANES / (own + 1u));
 }
 
-// Pixel, nearness and radius / w of a vertex; where it is not beyond the near plane, its point in the space of the eye and its radius
-// below 0.
+// Pixel, nearness and radius / w of a vertex; where it is not beyond the near plane, or far outside of the picture, its point in the space of
+// the eye and its radius below 0.
 fn point_of(end: End) -> vec4<f32> {
     let distance = -end.point.z;
-    if distance <= view.lens.near {
+    let nearness = nearness_at(max(distance, view.lens.near));
+    let scale = scale_of(view.lens, vec2(nearness)).x;
+    let pixel = on_screen(view.lens, end.point.xy, scale);
+    if distance <= view.lens.near || any(abs(pixel) >= vec2(LARGEST_PIXEL)) {
         return vec4(end.point, -max(end.radius, 1e-30));
     }
-    let nearness = nearness_at(distance);
-    let scale = scale_of(view.lens, vec2(nearness)).x;
-    return vec4(on_screen(view.lens, end.point.xy, scale), nearness, end.radius * scale);
+    return vec4(pixel, nearness, end.radius * scale);
 }
 
 fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {

@@ -3,8 +3,10 @@
 import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
-// Fragments that a group has room for.
-const ENTRIES: u32 = 384u;
+// Lanes of a group, and how many fragments it has room for.
+const LANES: u32 = 160u;
+const ENTRIES_OF_A_LANE: u32 = 3u;
+const ENTRIES: u32 = ENTRIES_OF_A_LANE * LANES;
 // Above all keys of fragments.
 const LAST_KEY: u32 = 0xffffffffu;
 // Of its room, what a unit should fill.
