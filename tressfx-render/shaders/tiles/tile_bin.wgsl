@@ -102,7 +102,10 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         }
         let begin = begin_of(info.nearest);
         let last = slice_of(begin, distances.y);
-        let reference = vertex | quarters_of(span, first, second, row);
+        var reference = 0u;
+        if tiles.stores == 1u {
+            reference = vertex | quarters_of(span, first, second, row);
+        }
         var flag = IS_NEAREST;
         for (var slice = slice_of(begin, distances.x); slice <= last; slice += STRIDE) {
             refer(slice * tile_count() + tile, reference | flag | select(0u, REACHES_ON, slice < last));

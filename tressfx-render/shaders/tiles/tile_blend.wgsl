@@ -49,7 +49,7 @@ import package::mean::largest_alpha;
 
 const NO_TILE: u32 = 0xffffffffu;
 // References that a lane looks at before the group draws those that touch its quarter.
-const LOOKS: u32 = 4u;
+const LOOKS: u32 = 3u;
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
