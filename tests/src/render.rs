@@ -201,6 +201,8 @@ pub struct Setup {
     pub size: [u32; 2],
     /// The technique.
     pub technique: Technique,
+    /// Whether a compute pass lays hair over the picture.
+    pub storage_target: bool,
     /// Whether depth and coverage of the hair are drawn too.
     pub hair_output: bool,
     /// Whether grooms may bring colours of their own along.
@@ -236,22 +238,34 @@ impl Default for Setup {
             depth: DepthOrder::Reverse,
         };
         let technique = Technique::default();
-        let (hair_output, own_colors, copies) = (false, false, false);
-        Self { camera, size: [96, 64], technique, hair_output, own_colors, copies, shadows: None }
+        Self {
+            camera,
+            size: [96, 64],
+            technique,
+            storage_target: false,
+            hair_output: false,
+            own_colors: false,
+            copies: false,
+            shadows: None,
+        }
     }
 }
 
 fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
     let desc = RenderDesc::new(setup.size, Format::Rgba16F).technique(setup.technique);
-    let desc =
-        desc.hair_output(setup.hair_output).own_colors(setup.own_colors).copies(setup.copies).shadows(setup.shadows);
+    let desc = desc.storage_target(setup.storage_target).hair_output(setup.hair_output);
+    let desc = desc.own_colors(setup.own_colors).copies(setup.copies).shadows(setup.shadows);
     HairRenderer::new(backend, &desc).expect("a renderer")
 }
 
 /// A picture and its depth.
 fn targets(backend: &mut dyn Run, size: [u32; 2]) -> [TextureId; 2] {
     [("test.color", Format::Rgba16F), ("test.depth", Format::Depth32F)]
-        .map(|(label, format)| backend.create_texture(&TextureDesc::new(label, size, format)).expect("a texture"))
+        .map(|(label, format)| {
+            let desc = TextureDesc::new(label, size, format);
+            let desc = if format.is_storage() { desc.storage() } else { desc };
+            backend.create_texture(&desc).expect("a texture")
+        })
 }
 
 /// Light in which hair that nothing shades is about as bright as hair in its own shadow.

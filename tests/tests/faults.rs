@@ -73,7 +73,7 @@ caught! {
     samplers_swapped: SamplersSwapped in "textures::nearest_takes_the_nearest_texel" "textures::linear_lies_between_texels";
     rows_from_the_start: RowsFromTheStart in "textures::rows_of_a_buffer_become_a_texture";
     rows_not_copied: RowsNotCopied in "textures::a_copy_replaces_what_was_drawn" "formats::every_format_is_copied_to_and_loaded";
-    storage_writes_lost: StorageWritesLost in "textures::compute_writes_every_storage_format";
+    storage_writes_lost: StorageWritesLost in "textures::compute_writes_every_storage_format" "textures::compute_changes_textures_in_place";
     rows_padded: RowsPadded in "formats::rows_come_back_tight_whatever_the_width";
     red_is_blue: RedIsBlue in "formats::rgba8";
     srgb_linear: SrgbLinear in "formats::rgba8_srgb";

@@ -137,6 +137,7 @@ impl Stage {
                 camera,
                 size: scene.size,
                 technique: Technique::default(),
+                storage_target: false,
                 hair_output: false,
                 copies: false,
                 own_colors: true,

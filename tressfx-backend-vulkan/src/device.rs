@@ -213,6 +213,8 @@ impl Gpu {
         caps.max_storage_buffers_per_stage = storage_buffers.min(64);
         caps.max_storage_textures_per_stage =
             limits.max_per_stage_descriptor_storage_images.min(limits.max_descriptor_set_storage_images).min(16);
+        // Vulkan asks for it of the formats that are storage.
+        caps.read_write_textures = true;
         caps.max_storage_binding_bytes = limits.max_storage_buffer_range.into();
         caps.max_uniform_binding_bytes = limits.max_uniform_buffer_range.into();
         caps.binding_alignment =

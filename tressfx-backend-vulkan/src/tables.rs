@@ -115,7 +115,7 @@ pub(crate) fn descriptor_type(kind: SlotKind) -> Option<vk::DescriptorType> {
         SlotKind::Texture | SlotKind::FilteredTexture | SlotKind::UintTexture | SlotKind::DepthTexture => {
             vk::DescriptorType::SAMPLED_IMAGE
         }
-        SlotKind::StorageTexture(_) => vk::DescriptorType::STORAGE_IMAGE,
+        SlotKind::StorageTexture(_) | SlotKind::ReadWriteTexture(_) => vk::DescriptorType::STORAGE_IMAGE,
         SlotKind::Sampler => vk::DescriptorType::SAMPLER,
         _ => return None,
     })
@@ -147,7 +147,7 @@ pub(crate) type StageAccess = (vk::PipelineStageFlags2, vk::AccessFlags2);
 pub(crate) fn scope(access: Access, format: Option<Format>) -> StageAccess {
     use vk::{AccessFlags2 as A, PipelineStageFlags2 as S};
     let shader_read = A::SHADER_STORAGE_READ | A::UNIFORM_READ | A::SHADER_SAMPLED_READ;
-    let read = if format.is_some() { A::SHADER_SAMPLED_READ } else { shader_read };
+    let read = if format.is_some() { A::SHADER_SAMPLED_READ | A::SHADER_STORAGE_READ } else { shader_read };
     let raster = S::VERTEX_SHADER | S::FRAGMENT_SHADER;
     let target = match format.is_some_and(Format::is_depth) {
         true => (

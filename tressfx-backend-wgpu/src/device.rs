@@ -3,10 +3,17 @@
 use std::future::Future;
 use std::task::{Context, Poll, Waker};
 
-use tressfx_core::backend::Caps;
+use tressfx_core::backend::{Caps, Format};
 use tressfx_core::error::{Error, Result};
 use tressfx_core::pass::Grid;
 use wgpu::{DeviceType, Features, Limits};
+
+use crate::tables::storage_texture;
+
+/// What a device of one's own is opened with, where the adapter has it.
+const WANTED: Features = Features::TIMESTAMP_QUERY
+    .union(Features::RG11B10UFLOAT_RENDERABLE)
+    .union(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
 
 /// How a device of one's own is opened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -55,7 +62,7 @@ pub(crate) async fn open(options: &WgpuOptions) -> Result<(wgpu::Device, wgpu::Q
     let adapter = &adapters[index];
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("tressfx"),
-        required_features: adapter.features() & (Features::TIMESTAMP_QUERY | Features::RG11B10UFLOAT_RENDERABLE),
+        required_features: adapter.features() & WANTED,
         required_limits: limits(&adapter.limits()),
         ..Default::default()
     };
@@ -100,6 +107,7 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     caps.r11g11b10_targets = features.contains(Features::RG11B10UFLOAT_RENDERABLE);
     caps.max_storage_buffers_per_stage = limits.max_storage_buffers_per_shader_stage;
     caps.max_storage_textures_per_stage = limits.max_storage_textures_per_shader_stage;
+    caps.read_write_textures = reads_what_it_writes(device);
     caps.max_storage_binding_bytes = limits.max_storage_buffer_binding_size;
     caps.max_uniform_binding_bytes = limits.max_uniform_buffer_binding_size;
     let alignments = [limits.min_storage_buffer_offset_alignment, limits.min_uniform_buffer_offset_alignment];
@@ -116,22 +124,34 @@ pub(crate) fn caps(device: &wgpu::Device) -> Caps {
     caps
 }
 
-/// Whether fragment shaders can write. Only adapters say so, and an engine hands over its device alone; so a layout is tried.
+/// Whether fragment shaders can write.
 fn writes_in_fragments(device: &wgpu::Device) -> bool {
-    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let entry = wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only: false },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
+    let written = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: None,
     };
+    can_bind(device, wgpu::ShaderStages::FRAGMENT, written)
+}
+
+/// Whether compute passes can read what they write of textures, of all formats that are storage. Without the feature some formats of some adapters can be bound so, but what is
+/// asked for is all or nothing.
+fn reads_what_it_writes(device: &wgpu::Device) -> bool {
+    let can = |format| {
+        let ty = storage_texture(format, wgpu::StorageTextureAccess::ReadWrite);
+        ty.is_ok_and(|ty| can_bind(device, wgpu::ShaderStages::COMPUTE, ty))
+    };
+    device.features().contains(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
+        && Format::ALL.into_iter().filter(|format| format.is_storage()).all(can)
+}
+
+/// Whether stages can be given a binding. Only adapters say so, and an engine hands over its device alone; so a layout is tried.
+fn can_bind(device: &wgpu::Device, visibility: wgpu::ShaderStages, ty: wgpu::BindingType) -> bool {
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let entry = wgpu::BindGroupLayoutEntry { binding: 0, visibility, ty, count: None };
     let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("hair.probe"), entries: &[entry] };
     drop(device.create_bind_group_layout(&descriptor));
-    // Where the answer is not there at once, the device is a browser's, and they can.
+    // Where the answer is not there at once, the device is a browser's, and it can.
     let mut caught = std::pin::pin!(scope.pop());
     !matches!(caught.as_mut().poll(&mut Context::from_waker(Waker::noop())), Poll::Ready(Some(_)))
 }

@@ -66,7 +66,8 @@ impl WgpuBackend {
     /// For engines: a backend on the engine's device.
     ///
     /// Timestamps are used where the device was made with `TIMESTAMP_QUERY`, targets of
-    /// [`R11G11B10F`](tressfx_core::backend::Format::R11G11B10F) where it was made with `RG11B10UFLOAT_RENDERABLE`.
+    /// [`R11G11B10F`](tressfx_core::backend::Format::R11G11B10F) where it was made with `RG11B10UFLOAT_RENDERABLE`,
+    /// and textures that compute passes read and write at once where it was made with `TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES`.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         Self {
             catalog: Catalog::new(device::caps(&device)),

@@ -128,15 +128,17 @@ pub(crate) fn layout_entry(slot: &ShaderSlot) -> Result<wgpu::BindGroupLayoutEnt
         SlotKind::FilteredTexture => texture(wgpu::TextureSampleType::Float { filterable: true }),
         SlotKind::UintTexture => texture(wgpu::TextureSampleType::Uint),
         SlotKind::DepthTexture => texture(wgpu::TextureSampleType::Depth),
-        SlotKind::StorageTexture(format) => wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format: texture_format(format)?,
-            view_dimension,
-        },
+        SlotKind::StorageTexture(format) => storage_texture(format, wgpu::StorageTextureAccess::WriteOnly)?,
+        SlotKind::ReadWriteTexture(format) => storage_texture(format, wgpu::StorageTextureAccess::ReadWrite)?,
         SlotKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         other => return unknown(other),
     };
     Ok(wgpu::BindGroupLayoutEntry { binding: slot.binding, visibility: stages(slot.stages), ty, count: None })
+}
+
+pub(crate) fn storage_texture(format: Format, access: wgpu::StorageTextureAccess) -> Result<wgpu::BindingType> {
+    let view_dimension = wgpu::TextureViewDimension::D2;
+    Ok(wgpu::BindingType::StorageTexture { access, format: texture_format(format)?, view_dimension })
 }
 
 fn stages(stages: Stages) -> wgpu::ShaderStages {

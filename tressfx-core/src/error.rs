@@ -95,6 +95,8 @@ pub enum Need {
     StorageBuffers(u32),
     /// So many textures that one compute pass writes.
     StorageTextures(u32),
+    /// Compute passes that read the texels of a texture that they write.
+    ReadWriteTextures,
     /// One storage binding of so many bytes.
     StorageBindingBytes(u64),
     /// One uniform binding of so many bytes.
@@ -128,6 +130,7 @@ impl fmt::Display for Need {
             Self::Target(format) => write!(out, "targets of the format {format:?}"),
             Self::StorageBuffers(count) => write!(out, "{count} storage buffers in one stage"),
             Self::StorageTextures(count) => write!(out, "{count} storage textures in one stage"),
+            Self::ReadWriteTextures => out.write_str("compute passes that read textures that they write"),
             Self::StorageBindingBytes(bytes) => write!(out, "a storage binding of {bytes} bytes"),
             Self::UniformBindingBytes(bytes) => write!(out, "a uniform binding of {bytes} bytes"),
             Self::BufferBytes(bytes) => write!(out, "a buffer of {bytes} bytes"),

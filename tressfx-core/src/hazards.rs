@@ -91,7 +91,7 @@ pub enum Layout {
     Target,
     /// As shaders read it.
     Sampled,
-    /// As compute passes write it.
+    /// As compute passes write it, and read what they write.
     Storage,
     /// As it is copied from.
     CopySource,
@@ -241,7 +241,7 @@ pub fn accesses(command: &Command) -> Vec<(Resource, Access)> {
 fn add_bindings(found: &mut Vec<(Resource, Access)>, shader: &Shader, bindings: &Bindings, [read, write]: [Access; 2]) {
     for (slot, binding) in shader.slots.iter().zip(bindings.all()) {
         let access = match slot.kind {
-            SlotKind::ReadWrite => read | write,
+            SlotKind::ReadWrite | SlotKind::ReadWriteTexture(_) => read | write,
             SlotKind::StorageTexture(_) => write,
             _ => read,
         };

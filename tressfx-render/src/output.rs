@@ -17,6 +17,8 @@ pub(crate) struct Output {
     pub(crate) hair: bool,
     /// Whether strands may have copies.
     pub(crate) copies: bool,
+    /// Whether compute passes may write the picture.
+    pub(crate) storage: bool,
 }
 
 impl Output {
@@ -49,6 +51,6 @@ pub(crate) fn walk(copies: bool) -> Specialization {
 impl From<Format> for Output {
     /// The picture alone.
     fn from(color: Format) -> Self {
-        Self { color, hair: false, copies: false }
+        Self { color, hair: false, copies: false, storage: false }
     }
 }

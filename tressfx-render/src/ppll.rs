@@ -307,7 +307,7 @@ impl Ppll {
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 3] {
-        [self.fill.shader(), &self.resolve.kernel().shader, &self.composite.pipeline.shader]
+        [self.fill.shader(), &self.resolve.kernel().shader, self.composite.shader()]
     }
 }
 

@@ -38,6 +38,8 @@ pub struct RenderDesc {
     pub target: Format,
     /// How fragments of hair behind each other are sorted and blended.
     pub technique: Technique,
+    /// Whether compute passes lay hair over the picture instead of drawing it there: see [`RenderDesc::storage_target`](Self::storage_target()).
+    pub storage_target: bool,
     /// Whether depth and coverage of the hair are written too: see [`Targets::hair`].
     pub hair_output: bool,
     /// Whether the motion of hair on the screen is written too: see [`Targets::velocity`].
@@ -55,8 +57,17 @@ impl RenderDesc {
     pub fn new(size: [u32; 2], target: Format) -> Self {
         let shadows = Some(ShadowDesc::default());
         let technique = Technique::default();
-        let (hair_output, velocity_output, own_colors, copies) = (false, false, false, false);
-        Self { size, target, technique, hair_output, velocity_output, own_colors, copies, shadows }
+        Self {
+            size,
+            target,
+            technique,
+            storage_target: false,
+            hair_output: false,
+            velocity_output: false,
+            own_colors: false,
+            copies: false,
+            shadows,
+        }
     }
 
     /// The same with other shadows, or with none.
@@ -69,6 +80,14 @@ impl RenderDesc {
     #[must_use]
     pub fn technique(self, technique: impl Into<Technique>) -> Self {
         Self { technique: technique.into(), ..self }
+    }
+
+    /// The same, with a compute pass that lays hair over the picture instead of drawing it there. For GPUs that have few raster units: an H200 takes a tenth of
+    /// the time. [`Targets::color`] needs [`TextureUses::STORAGE`](tressfx_core::backend::TextureUses::STORAGE) then and is [`Format::Rgba16F`] or [`Format::Rgba8`]; the device has
+    /// [`Caps::read_write_textures`](tressfx_core::backend::Caps::read_write_textures). Not together with [`RenderDesc::hair_output`].
+    #[must_use]
+    pub fn storage_target(self, storage_target: bool) -> Self {
+        Self { storage_target, ..self }
     }
 
     /// The same with or without depth and coverage of the hair, which take 4 more bytes a pixel, and 4 more where lists are bounded.
@@ -97,7 +116,7 @@ impl RenderDesc {
     }
 
     fn output(&self) -> Output {
-        Output { color: self.target, hair: self.hair_output, copies: self.copies }
+        Output { color: self.target, hair: self.hair_output, copies: self.copies, storage: self.storage_target }
     }
 }
 
@@ -170,7 +189,7 @@ impl HairRenderer {
     /// Compiles the kernels and makes the buffers whose size depends on that of the view.
     ///
     /// # Errors
-    /// A `k` that the technique does not take, a setting of shadows out of its range, what the device lacks, or what the backend says.
+    /// A `k` that the technique does not take, a setting of shadows out of its range, a format that no compute pass writes where one is to, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
         let ((order, velocity, views, shadows, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.output())?;

@@ -121,7 +121,7 @@ impl ShortCut {
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 4] {
         let Self { depths, colors, resolve, composite, .. } = self;
-        [depths.shader(), colors.shader(), &resolve.kernel.shader, &composite.pipeline.shader]
+        [depths.shader(), colors.shader(), &resolve.kernel.shader, composite.shader()]
     }
 }
 

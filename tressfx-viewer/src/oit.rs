@@ -33,6 +33,18 @@ pub(crate) struct Oit {
     /// What turns segments of strands into fragments; the picture is the same
     #[arg(long, value_enum, default_value_t = FillName::Compute)]
     fill: FillName,
+    /// What lays hair over the picture. Without it, compute passes where a GPU can, unless depth and coverage are asked for too
+    #[arg(long, value_enum)]
+    pub(crate) composite: Option<CompositeName>,
+}
+
+/// What lays hair over the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CompositeName {
+    /// Compute passes
+    Compute,
+    /// Fragment shaders
+    Raster,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -45,6 +45,7 @@ fn access(kind: SlotKind) -> &'static str {
         SlotKind::Read => "read",
         SlotKind::ReadWrite => "read-write",
         SlotKind::StorageTexture(_) => "written texture",
+        SlotKind::ReadWriteTexture(_) => "read and written texture",
         SlotKind::Sampler => "sampler",
         _ => "texture",
     }

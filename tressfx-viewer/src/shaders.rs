@@ -22,6 +22,7 @@ use tressfx_sim::body::{BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, FieldSurface, Fields};
 use tressfx_sim::{HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams};
 
+use crate::oit::CompositeName;
 use crate::cli;
 use crate::groom::Groom;
 use crate::params::Params;
@@ -126,6 +127,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let most = u64::MAX;
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
+    caps.read_write_textures = true;
     let mut backend = NullBackend::new(caps);
     let (volume, copies) = (params.volume.clone(), params.material(0).copies > 1);
     // What strands want at rest takes time and changes no kernel.
@@ -143,7 +145,8 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     body(&mut backend, &sim, &groom.sections[0])?;
     interpolations(&mut backend)?;
     let technique = args.oit.technique()?;
-    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique).hair_output(args.hair_output);
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(technique);
+    let desc = desc.hair_output(args.hair_output).storage_target(args.oit.composite == Some(CompositeName::Compute));
     let own_colors = OwnLook::of(&groom.sections[0]).colors().is_some();
     let desc = desc.velocity_output(true).own_colors(own_colors || args.own_colors).copies(copies);
     HairRenderer::new(&mut backend, &desc)?;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use glam::Quat;
 use tressfx_asset::mesh::Mesh;
-use tressfx_core::backend::{Format, TextureDesc};
+use tressfx_core::backend::{Caps, Format, TextureDesc};
 use tressfx_core::pass::{Load, PassList, RasterPass, Ticket};
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Pose, View};
@@ -18,6 +18,7 @@ use tressfx_viewer::scene::{Backdrop, MeshDraw, Scene, SceneMesh, ScenePass, Sur
 use crate::cli::{self, Render};
 use crate::field_view::FieldViews;
 use crate::interpolate;
+use crate::oit::CompositeName;
 use crate::own_look::Textures;
 use crate::run::Run;
 use crate::stats::RenderStats;
@@ -26,6 +27,14 @@ const TARGET: Format = Format::Rgba16F;
 
 /// More than hair moves: pixels without hair.
 pub(crate) const NO_MOTION: f32 = 1e9;
+
+/// Whether a compute pass lays hair over the picture.
+fn is_storage_target(args: &Render, caps: &Caps, hair_output: bool) -> bool {
+    match args.oit.composite {
+        Some(composite) => composite == CompositeName::Compute,
+        None => caps.read_write_textures && !caps.is_cpu && !hair_output,
+    }
+}
 
 /// Everything that a picture is taken with.
 #[derive(Debug)]
@@ -55,9 +64,12 @@ impl Studio {
     pub(crate) fn new(run: &mut Run, args: &Render) -> Result<Self> {
         let view = args.camera.view(&run.groom.rest(), args.size)?;
         let backend = &mut *run.backend;
-        let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
-        let mut targets = Targets::new(texture("picture", TARGET)?, texture("depth", Format::Depth32F)?);
         let hair_output = args.depth_out.is_some() || args.coverage_out.is_some();
+        let storage_target = is_storage_target(args, backend.caps(), hair_output);
+        let picture = TextureDesc::new("picture", args.size, TARGET);
+        let picture = backend.create_texture(&if storage_target { picture.storage() } else { picture })?;
+        let mut texture = |label, format| backend.create_texture(&TextureDesc::new(label, args.size, format));
+        let mut targets = Targets::new(picture, texture("depth", Format::Depth32F)?);
         if hair_output {
             targets = targets.hair(texture("hair", HAIR_FORMAT)?);
         }
@@ -101,7 +113,8 @@ impl Studio {
             let section = section.with_own_look(backend, &mut uploads, &look)?;
             sections.push((section, material(args, *run.params.material(index))));
         }
-        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).hair_output(hair_output);
+        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?);
+        let desc = desc.storage_target(storage_target).hair_output(hair_output);
         // Where nothing opaque is drawn, nothing that is not seen keeps light away.
         let shadows = args.shadows.desc().map(|shadows| shadows.skin(!opaque.is_empty()));
         let copies = sections.iter().any(|(_, material)| material.copies > 1);

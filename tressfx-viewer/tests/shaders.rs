@@ -41,6 +41,7 @@ const VARIANTS: [&[&str]; 18] = [
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
     &["--oit", "shortcut", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles"],
+    &["--oit", "tiles", "--composite", "compute"],
     &["--oit", "tiles", "--places", "4", "--hair-output", "--params", "copies.toml"],
 ];
 

@@ -111,9 +111,10 @@ const KERNELS: [(&str, &str, &str); 8] = [
         "conflict",
     ),
     (
-        "a texture that is read and written",
-        "@group(0) @binding(0) var a: texture_storage_2d<r32uint, read_write>;
-        @compute @workgroup_size(1) fn main() { textureStore(a, vec2<u32>(), textureLoad(a, vec2<u32>())); }",
+        "a storage texture that is read alone",
+        "@group(0) @binding(0) var a: texture_storage_2d<r32uint, read>;
+        @group(0) @binding(1) var<storage, read_write> b: array<u32>;
+        @compute @workgroup_size(1) fn main() { b[0] = textureLoad(a, vec2<u32>()).x; }",
         "no kind of binding",
     ),
     (

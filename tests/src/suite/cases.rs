@@ -159,6 +159,7 @@ macro_rules! each_case {
                 a_copy_replaces_what_was_drawn: [Compute Raster ReadBack];
                 compute_writes_every_storage_format: [Compute ReadBack];
                 what_compute_writes_is_sampled_and_drawn_over: [Compute Raster ReadBack];
+                compute_changes_textures_in_place: [Compute Raster ReadBack];
                 integers_are_loaded: [Compute ReadBack];
             }
             state {

@@ -1,9 +1,12 @@
 //! Textures that are sampled, copied to from buffers, and written by compute passes.
 
-use tressfx_core::backend::{Blend, BufferDesc, Depth, Format};
+use std::sync::Arc;
+
+use tressfx_core::backend::{Blend, BufferDesc, ComputeDesc, Depth, Format};
+use tressfx_core::error::{Error, Need};
 use tressfx_core::id::TextureId;
 use tressfx_core::pass::Load;
-use tressfx_core::shader::{Sampler, ShaderSource};
+use tressfx_core::shader::{Sampler, Shader, ShaderSource, Specialization};
 
 use super::formats::copied;
 use super::kernels::LOAD;
@@ -187,6 +190,54 @@ pub(super) fn what_compute_writes_is_sampled_and_drawn_over(t: &mut Subject) {
     assert_near(&found, &[0.5]);
     t.dispatch(&again, &[("picture", picture.into())], [1; 3]);
     assert_eq!(t.texels(picture), encode(Format::Rgba16F, [2.0; 4]).repeat(32));
+}
+
+/// Adds half of what a texel of 8 x 4 has to it, and its place.
+fn changer(format: &str) -> ShaderSource {
+    let text = format!(
+        "@group(0) @binding(0) var picture: texture_storage_2d<{format}, read_write>;
+        @compute @workgroup_size(8, 4) fn change(@builtin(local_invocation_id) at: vec3<u32>) {{
+            let before = textureLoad(picture, at.xy);
+            textureStore(picture, at.xy, 0.5 * before + vec4<f32>(vec2<f32>(at.xy) / 51.0, 0.2, 0.5));
+        }}"
+    );
+    source("suite.change", text.leak())
+}
+
+pub(super) fn compute_changes_textures_in_place(t: &mut Subject) {
+    if !t.backend.caps().read_write_textures {
+        let shader = Arc::new(Shader::new(&changer("rgba16float"), &Specialization::new()).expect("a shader"));
+        let refused = t.backend.create_compute(&ComputeDesc::new(shader));
+        assert!(matches!(refused, Err(Error::Unsupported { need: Need::ReadWriteTextures, .. })), "{refused:?}");
+        return;
+    }
+    for (format, name) in [(Format::Rgba8, "rgba8unorm"), (Format::Rgba16F, "rgba16float"), (Format::R32F, "r32float")]
+    {
+        let kernel = t.compute(&changer(name));
+        let picture = t.storage_texture([8, 4], format);
+        // Drawn to, changed by two passes of which one reads what the other writes, and drawn over again.
+        t.draw(picture, Load::Clear([0.4, 0.4, 0.4, 1.0]), Vec::new());
+        t.dispatch(&kernel, &[("picture", picture.into())], [1; 3]);
+        t.dispatch(&kernel, &[("picture", picture.into())], [1; 3]);
+        t.draw(picture, Load::Keep, Vec::new());
+        let found = t.texels(picture);
+        for (i, texel) in found.chunks(format.bytes() as usize).enumerate() {
+            let twice = |first: f32, more: f32| 0.5 * (0.5 * first + more) + more;
+            let [x, y] = [i % 8, i / 8].map(|at| at as f32 / 51.0);
+            super::formats::assert_rounds_to(format, texel, [twice(0.4, x), twice(0.4, y), twice(0.4, 0.2), twice(1.0, 0.5)]);
+        }
+    }
+    let text = "@group(0) @binding(0) var picture: texture_storage_2d<r32uint, read_write>;
+        @compute @workgroup_size(8, 4) fn count(@builtin(local_invocation_id) at: vec3<u32>) {
+            textureStore(picture, at.xy, textureLoad(picture, at.xy) + vec4<u32>(1000000000u + at.x + 8u * at.y));
+        }";
+    let kernel = t.compute(&source("suite.count", text));
+    let picture = t.storage_texture([8, 4], Format::R32Uint);
+    for _ in 0..3 {
+        t.dispatch(&kernel, &[("picture", picture.into())], [1; 3]);
+    }
+    let expected: Vec<u32> = (0..32u32).map(|i| (1_000_000_000 + i).wrapping_mul(3)).collect();
+    assert_eq!(t.texel_words(picture), expected);
 }
 
 pub(super) fn integers_are_loaded(t: &mut Subject) {

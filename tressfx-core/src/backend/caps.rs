@@ -25,6 +25,8 @@ pub struct Caps {
     pub max_storage_buffers_per_stage: u32,
     /// Textures that one compute pass can write.
     pub max_storage_textures_per_stage: u32,
+    /// Whether a compute pass can read the texels of a texture that it writes, of every [storage format](Format::is_storage).
+    pub read_write_textures: bool,
     /// Bytes of one storage binding.
     pub max_storage_binding_bytes: u64,
     /// Bytes of one uniform binding.
@@ -60,6 +62,7 @@ impl Caps {
             r11g11b10_targets: false,
             max_storage_buffers_per_stage: 8,
             max_storage_textures_per_stage: 4,
+            read_write_textures: false,
             max_storage_binding_bytes: 128 << 20,
             max_uniform_binding_bytes: 64 << 10,
             binding_alignment: 256,
@@ -86,6 +89,7 @@ impl Caps {
             Need::Target(_) => have(true),
             Need::StorageBuffers(count) => (count.into(), self.max_storage_buffers_per_stage.into()),
             Need::StorageTextures(count) => (count.into(), self.max_storage_textures_per_stage.into()),
+            Need::ReadWriteTextures => have(self.read_write_textures),
             Need::StorageBindingBytes(bytes) => (bytes, self.max_storage_binding_bytes.min(self.max_buffer_bytes)),
             Need::UniformBindingBytes(bytes) => (bytes, self.max_uniform_binding_bytes.min(self.max_buffer_bytes)),
             Need::BufferBytes(bytes) => (bytes, self.max_buffer_bytes),

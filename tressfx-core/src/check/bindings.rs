@@ -76,7 +76,7 @@ impl Known<'_> {
             SlotKind::FilteredTexture => format.is_filterable(),
             SlotKind::UintTexture => format.is_uint(),
             SlotKind::DepthTexture => format.is_depth(),
-            SlotKind::StorageTexture(written) => format == written,
+            SlotKind::StorageTexture(written) | SlotKind::ReadWriteTexture(written) => format == written,
             _ => false,
         };
         if fits { Ok(()) } else { Err(format!("it is a {kind}, `{}` has the format {format:?}", desc.label)) }

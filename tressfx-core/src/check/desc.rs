@@ -145,6 +145,7 @@ fn slots(shader: &Shader, caps: &Caps) -> Result<()> {
         let need = match slot.kind {
             SlotKind::Uniform => Need::UniformBindingBytes(slot.min_bytes),
             SlotKind::Read | SlotKind::ReadWrite => Need::StorageBindingBytes(slot.min_bytes),
+            SlotKind::ReadWriteTexture(_) => Need::ReadWriteTextures,
             _ => continue,
         };
         caps.check(shader.label, &[need])?;

@@ -55,6 +55,8 @@ pub enum SlotKind {
     DepthTexture,
     /// `texture_storage_2d<FORMAT, write>`
     StorageTexture(Format),
+    /// `texture_storage_2d<FORMAT, read_write>`
+    ReadWriteTexture(Format),
     /// `sampler`
     Sampler,
 }
@@ -72,7 +74,7 @@ impl SlotKind {
 
     /// Whether the shader writes it.
     pub fn is_written(self) -> bool {
-        matches!(self, Self::ReadWrite | Self::StorageTexture(_))
+        matches!(self, Self::ReadWrite | Self::StorageTexture(_) | Self::ReadWriteTexture(_))
     }
 }
 
@@ -87,6 +89,7 @@ impl fmt::Display for SlotKind {
             Self::UintTexture => "uint_texture",
             Self::DepthTexture => "depth_texture",
             Self::StorageTexture(_) => "storage_texture",
+            Self::ReadWriteTexture(_) => "read_write_texture",
             Self::Sampler => "sampler",
         })
     }
@@ -191,6 +194,9 @@ fn kind(module: &naga::Module, info: &naga::valid::ModuleInfo, handle: Handle<Gl
         ImageClass::Depth { multi: false } => Some(SlotKind::DepthTexture),
         ImageClass::Storage { format, access } if access == StorageAccess::STORE => {
             storage_format(format).map(SlotKind::StorageTexture)
+        }
+        ImageClass::Storage { format, access } if access == StorageAccess::LOAD | StorageAccess::STORE => {
+            storage_format(format).map(SlotKind::ReadWriteTexture)
         }
         _ => None,
     }

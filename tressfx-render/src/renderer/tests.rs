@@ -117,7 +117,7 @@ fn depth_of_hair_takes_no_storage_buffer_of_its_own() {
     for technique in techniques {
         let [without, with] = [false, true].map(|hair| {
             let mut backend = NullBackend::default();
-            technique.make(&mut backend, [64, 64], Output { color: Format::Rgba16F, hair, copies: true }).unwrap();
+            technique.make(&mut backend, [64, 64], Output { hair, copies: true, ..Format::Rgba16F.into() }).unwrap();
             backend.shaders.iter().map(|shader| (shader.label, shader.storage_buffers())).collect::<Vec<_>>()
         });
         assert_eq!(with, without, "{technique:?}");
@@ -149,7 +149,7 @@ fn a_technique_knows_what_it_takes() {
     ];
     for technique in techniques {
         for (size, hair) in [[96, 64], [1, 1], [0, 7]].into_iter().flat_map(|size| [(size, false), (size, true)]) {
-            let output = Output { color: Format::Rgba16F, hair, copies: true };
+            let output = Output { hair, copies: true, ..Format::Rgba16F.into() };
             let mut backend = NullBackend::default();
             let made = technique.make(&mut backend, size, output).unwrap();
             assert_eq!(made.bytes(), backend.memory().bytes, "{technique:?} at {size:?}");
