@@ -3,6 +3,7 @@
 import package::grid::{GROUP, thread_index};
 import package::ribbon::{is_sound, on_screen, scale_at};
 import package::section::{SectionUniform, shaded_vertex};
+import package::shares::{root_of_share, with_root};
 import package::view::{LensUniform, STORED_LIGHTS};
 
 struct OpaqueUniform {
@@ -30,15 +31,31 @@ struct OpaqueScenesUniform {
 @group(0) @binding(3) var<storage, read> positions: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> arriving: array<vec4<u32>>;
 
-// Distance of a scene in a pixel, as far as anything where there is none.
-fn scene_at(scene: u32, pixel: vec2<i32>) -> f32 {
-    let inside = vec2<u32>(clamp(pixel, vec2(0), vec2<i32>(opaque_scenes.scenes[scene].size) - 1));
+// What the scene hides in a pixel: the nearness of what is there.
+fn nearness_at(scene: u32, pixel: vec2<u32>) -> f32 {
+    let seen = textureLoad(depth, pixel + opaque_scenes.scenes[scene].offset, 0);
+    return (seen - opaque_scenes.scenes[scene].lens.depth_offset) * opaque_scenes.scenes[scene].lens.depth_scale;
+}
+
+// The nearness up to which what the scene has there leaves light for a point at this distance. All comparisons are with one number, and each takes no division.
+fn nearest_to_pass(scene: u32, distance: f32) -> f32 {
     let lens = opaque_scenes.scenes[scene].lens;
-    let nearness = (textureLoad(depth, inside + opaque_scenes.scenes[scene].offset, 0) - lens.depth_offset) * lens.depth_scale;
+    let least = distance - opaque_scenes.scenes[scene].bias;
     if lens.is_perspective == 0u {
-        return (1.0 - nearness) / lens.nearness_slope;
+        return 1.0 - lens.nearness_slope * least;
     }
-    return select(3e38, 1.0 / nearness, nearness > 0.0);
+    return select(3e38, 1.0 / least, least > 0.0);
+}
+
+// The share of the light that passes in four pixels of a row, weighted.
+fn lit_in_row(scene: u32, columns: vec4<u32>, row: u32, weights: vec4<f32>, nearest: f32) -> f32 {
+    let seen = vec4(
+        nearness_at(scene, vec2(columns.x, row)),
+        nearness_at(scene, vec2(columns.y, row)),
+        nearness_at(scene, vec2(columns.z, row)),
+        nearness_at(scene, vec2(columns.w, row)),
+    );
+    return dot(weights, select(vec4(0.0), vec4(1.0), seen <= vec4(nearest)));
 }
 
 // The share of the light that arrives: four by four comparisons, weighted as a box of three by three pixels around the point.
@@ -46,13 +63,18 @@ fn lit_at(scene: u32, at: vec2<f32>, distance: f32) -> f32 {
     let middle = at - 0.5;
     let corner = vec2<i32>(floor(middle)) - 1;
     let share = middle - floor(middle);
-    var sum = 0.0;
-    for (var i = 0; i < 16; i++) {
-        let step = vec2(i & 3, i >> 2u);
-        let edge = select(select(vec2(1.0), share, step == vec2(3)), 1.0 - share, step == vec2(0));
-        sum += edge.x * edge.y * select(0.0, 1.0, distance <= scene_at(scene, corner + step) + opaque_scenes.scenes[scene].bias);
-    }
-    return sum / 9.0;
+    let last = vec2<i32>(opaque_scenes.scenes[scene].size) - 1;
+    let columns = vec4<u32>(clamp(corner.x + vec4(0, 1, 2, 3), vec4(0), vec4(last.x)));
+    let rows = vec4<u32>(clamp(corner.y + vec4(0, 1, 2, 3), vec4(0), vec4(last.y)));
+    let weights = vec4(1.0 - share.x, 1.0, 1.0, share.x);
+    let nearest = nearest_to_pass(scene, distance);
+    let sums = vec4(
+        lit_in_row(scene, columns, rows.x, weights, nearest),
+        lit_in_row(scene, columns, rows.y, weights, nearest),
+        lit_in_row(scene, columns, rows.z, weights, nearest),
+        lit_in_row(scene, columns, rows.w, weights, nearest),
+    );
+    return dot(sums, vec4(1.0 - share.y, 1.0, 1.0, share.y)) / 9.0;
 }
 
 fn share_at(scene: u32, point: vec3<f32>) -> f32 {
@@ -83,12 +105,15 @@ fn shadow_opaque(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroup
     }
     let point = (section.pose * vec4(positions[i].xyz, 1.0)).xyz;
     let before = arriving[i].zw;
-    var roots = array(unpack4x8unorm(before.x), unpack4x8unorm(before.y));
+    var left = before;
     for (var scene = 0u; scene < opaque_scenes.count; scene++) {
         let light = opaque_scenes.scenes[scene].light;
-        roots[light / 4u][light % 4u] *= sqrt(share_at(scene, point));
+        let root = root_of_share(left, light);
+        // Where hair leaves nothing, the scene takes nothing.
+        if root > 0.0 {
+            left = with_root(left, light, root * sqrt(share_at(scene, point)));
+        }
     }
-    let left = vec2(pack4x8unorm(roots[0]), pack4x8unorm(roots[1]));
     if any(left != before) {
         arriving[i] = vec4(arriving[i].xy, left);
     }

@@ -13,10 +13,11 @@ use crate::output::walk;
 use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 
-const LIBRARY: &[Module] = &with_shared::<3, 19>([
+const LIBRARY: &[Module] = &with_shared::<4, 20>([
     ("frames", include_str!("../../shaders/shadow/frames.wgsl")),
     ("grids", include_str!("../../shaders/shadow/grids.wgsl")),
     ("hair_shadow", include_str!("../../shaders/shadow/hair_shadow.wgsl")),
+    ("shares", include_str!("../../shaders/shadow/shares.wgsl")),
 ]);
 
 /// What the shader of a surface imports to ask `hair_light` and `hair_sky` of the module `hair_shadow` what hair leaves of the light there. It binds
