@@ -260,12 +260,11 @@ fn renderer(backend: &mut dyn Run, setup: &Setup) -> HairRenderer {
 
 /// A picture and its depth.
 fn targets(backend: &mut dyn Run, size: [u32; 2]) -> [TextureId; 2] {
-    [("test.color", Format::Rgba16F), ("test.depth", Format::Depth32F)]
-        .map(|(label, format)| {
-            let desc = TextureDesc::new(label, size, format);
-            let desc = if format.is_storage() { desc.storage() } else { desc };
-            backend.create_texture(&desc).expect("a texture")
-        })
+    [("test.color", Format::Rgba16F), ("test.depth", Format::Depth32F)].map(|(label, format)| {
+        let desc = TextureDesc::new(label, size, format);
+        let desc = if format.is_storage() { desc.storage() } else { desc };
+        backend.create_texture(&desc).expect("a texture")
+    })
 }
 
 /// Light in which hair that nothing shades is about as bright as hair in its own shadow.

@@ -2,8 +2,8 @@
 
 mod support;
 
-use glam::camera::rh;
 use glam::Vec3;
+use glam::camera::rh;
 use tressfx_asset::mesh::Mesh;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Difference, Groom, Picture, Screen};

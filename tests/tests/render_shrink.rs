@@ -57,22 +57,48 @@ fn techniques() -> [Technique; 2] {
 #[test]
 fn what_was_not_needed_for_two_seconds_is_given_back() {
     for technique in techniques() {
+        // Tiles keep less than what they have grown to, once nothing has needed it for two seconds.
+        let settles = u32::from(matches!(technique, Technique::Tiles(_)));
         let mut rig = Rig::new(technique);
         let first = (rig.bytes(), rig.backend.memory().bytes);
         rig.frames(1, |_| 2_000_000);
         assert!(rig.bytes() > first.0 + 8_000_000, "{technique:?}");
         rig.frames(119, |_| 2_000_000);
         rig.frames(119, |_| 0);
-        assert_eq!(rig.changes, 1, "{technique:?}: it might come back");
+        assert_eq!(rig.changes, 1 + settles, "{technique:?}: it might come back");
         rig.frames(1, |_| 0);
-        assert_eq!((rig.bytes(), rig.backend.memory().bytes, rig.changes), (first.0, first.1, 2), "{technique:?}");
-        // Two thirds of it are needed: that is no surplus.
+        let changes = 2 + settles;
+        assert_eq!(
+            (rig.bytes(), rig.backend.memory().bytes, rig.changes),
+            (first.0, first.1, changes),
+            "{technique:?}"
+        );
+        // Two thirds of what there is room for are needed: that is no surplus for lists.
         rig.frames(1, |_| 2_000_000);
         rig.frames(500, |_| 1_600_000);
-        assert_eq!(rig.changes, 3, "{technique:?}");
+        assert_eq!(rig.changes, 3 + 3 * settles, "{technique:?}");
         rig.frames(240, |_| 600_000);
-        assert_eq!((rig.changes, rig.renderer.capacity()), (4, 750_000), "{technique:?}");
+        let capacity = if settles == 1 { 660_000 } else { 750_000 };
+        assert_eq!((rig.changes, rig.renderer.capacity()), (4 + 3 * settles, capacity), "{technique:?}");
     }
+}
+
+#[test]
+fn tiles_settle_a_tenth_above_what_they_need_and_grow_before_it_is_too_little() {
+    let mut rig = Rig::new(TilesDesc::default().skips_hidden(false));
+    rig.frames(1, |_| 2_000_000);
+    assert_eq!(rig.renderer.capacity(), 2_500_000);
+    rig.frames(119, |frame| 2_000_000 - 300_000 * (frame % 2));
+    assert_eq!((rig.renderer.capacity(), rig.changes), (2_200_000, 2), "the most of two seconds counts");
+    rig.frames(1000, |frame| 1_840_000 + 260_000 * (frame % 2));
+    assert_eq!((rig.renderer.capacity(), rig.changes), (2_200_000, 2), "a twentieth more or less changes nothing");
+    // Hair comes nearer, by one part in a hundred a frame; what is measured is of three frames before.
+    let need = |frame: i32| (2_100_000.0 * 1.01f64.powi(frame)) as u32;
+    for frame in 0..100 {
+        assert!(need(frame) <= rig.renderer.capacity(), "frame {frame} needs {}", need(frame));
+        rig.frames(1, |_| need(frame - 3));
+    }
+    assert!(rig.changes < 9, "{} changes", rig.changes);
 }
 
 #[test]
@@ -81,7 +107,9 @@ fn a_need_that_flickers_does_not_move_memory() {
         for period in [2, 10, 60, 119] {
             let mut rig = Rig::new(technique);
             rig.frames(1200, |frame| if frame % period == 0 { 2_000_000 } else { 1000 });
-            assert_eq!(rig.changes, 1, "{technique:?}, every {period} frames");
+            // Tiles settle once.
+            let most = 1 + u32::from(matches!(technique, Technique::Tiles(_)));
+            assert!(rig.changes <= most, "{technique:?}, every {period} frames: {} changes", rig.changes);
         }
     }
 }

@@ -142,7 +142,10 @@ impl Shader {
 
     /// Textures that a compute pass of it writes.
     pub fn storage_textures(&self) -> u32 {
-        self.slots.iter().filter(|slot| matches!(slot.kind, SlotKind::StorageTexture(_) | SlotKind::ReadWriteTexture(_))).count() as u32
+        self.slots
+            .iter()
+            .filter(|slot| matches!(slot.kind, SlotKind::StorageTexture(_) | SlotKind::ReadWriteTexture(_)))
+            .count() as u32
     }
 
     /// Whether its fragment stage writes buffers.

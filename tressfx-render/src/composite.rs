@@ -76,7 +76,9 @@ impl Composite {
             Way::Compute(kernel) => {
                 let [uniform, tiles, colors] = shared;
                 let [drawn, picture] = [("drawn", resolved.draw.into()), ("picture", targets.color.into())];
-                let bindings = self.bound.get((index, Some(targets.color)), || kernel.bind(&[uniform, tiles, colors, drawn, picture]))?;
+                let bindings = self
+                    .bound
+                    .get((index, Some(targets.color)), || kernel.bind(&[uniform, tiles, colors, drawn, picture]))?;
                 list.compute(kernel, &bindings, Grid([tile_count(size).clamp(1, MOST_GROUPS), 1, 1]));
             }
         }

@@ -26,7 +26,7 @@ use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::usage::Usage;
 use crate::views::BoundView;
 use kernels::{Kernels, alloc_grid};
-use memory::Memory;
+use memory::{Memory, is_tight};
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
@@ -124,6 +124,8 @@ pub(crate) struct Tiles {
     /// Whether hair was so dense that what it hides is left out.
     is_dense: bool,
     is_cpu: bool,
+    /// Vertices that the sections of the newest frame have.
+    most_vertices: u64,
 }
 
 /// References of a pixel with hair, in the mean of a view, from which on hair is dense.
@@ -158,6 +160,7 @@ impl Tiles {
             fitting: 0,
             is_dense: false,
             is_cpu: backend.caps().is_cpu,
+            most_vertices: 0,
         })
     }
 
@@ -262,8 +265,9 @@ impl TechniqueInstance for Tiles {
         let before = self.room();
         let needed = [counters.wanted, counters.tiles_with_hair, counters.vertices].map(u64::from);
         let [kept, tiles, vertices] = needed;
-        if needed.iter().zip(before).any(|(needed, room)| *needed > room) {
-            let vertices = if vertices > before[2] { with_headroom(vertices) } else { 0 };
+        if needed.iter().zip(before).any(|(needed, room)| is_tight(room, *needed)) {
+            let more = if is_tight(before[2], vertices) { with_headroom(vertices) } else { 0 };
+            let vertices = more.min(self.most_vertices.max(vertices));
             self.reserve(backend, Wanted { kept, tiles, vertices })?;
         }
         self.note_density(counters);
@@ -316,7 +320,8 @@ impl TechniqueInstance for Tiles {
         layout::check(draws)
     }
 
-    fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
+    fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
+        self.most_vertices = layout::vertices(draws);
         self.usage.begin_frame();
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();

@@ -22,9 +22,9 @@ use tressfx_sim::body::{BoneRoots, Skinning, TriangleRoots};
 use tressfx_sim::field::{FieldDesc, FieldSurface, Fields};
 use tressfx_sim::{HairSim, Interpolation, InterpolationParams, SectionDesc, SimParams, SleepParams};
 
-use crate::oit::CompositeName;
 use crate::cli;
 use crate::groom::Groom;
+use crate::oit::CompositeName;
 use crate::params::Params;
 use crate::say::say;
 

@@ -224,7 +224,11 @@ pub(super) fn compute_changes_textures_in_place(t: &mut Subject) {
         for (i, texel) in found.chunks(format.bytes() as usize).enumerate() {
             let twice = |first: f32, more: f32| 0.5 * (0.5 * first + more) + more;
             let [x, y] = [i % 8, i / 8].map(|at| at as f32 / 51.0);
-            super::formats::assert_rounds_to(format, texel, [twice(0.4, x), twice(0.4, y), twice(0.4, 0.2), twice(1.0, 0.5)]);
+            super::formats::assert_rounds_to(
+                format,
+                texel,
+                [twice(0.4, x), twice(0.4, y), twice(0.4, 0.2), twice(1.0, 0.5)],
+            );
         }
     }
     let text = "@group(0) @binding(0) var picture: texture_storage_2d<r32uint, read_write>;
