@@ -113,17 +113,23 @@ struct Rank {
 
 // The rank of an entry at a place in the order of pixels.
 fn rank_of(entry: Entry, place: u32) -> Rank {
-    let pixel = pixel_of(entry);
-    var rank = Rank(starts[pixel], 0u, 0u);
-    for (var i = starts[pixel]; i < starts[pixel + 1u]; i++) {
-        rank.first += u32(words[0][i] < entry.key);
-        if words[0][i] == entry.key {
-            rank.same += 1u;
-            rank.own += u32(i < place);
+    let places = places_of(pixel_of(entry));
+    // Those that are nearer, and those that are not farther: without a branch, since in each round some lane comes to its own entry.
+    var nearer = places.x;
+    var as_near = places.x;
+    for (var i = places.x; i < places.y; i++) {
+        let key = words[0][i];
+        nearer += u32(key < entry.key);
+        as_near += u32(key <= entry.key);
+    }
+    let same = as_near - nearer;
+    var own = nearer;
+    if same > 1u {
+        for (var i = places.x; i < place; i++) {
+            own += u32(words[0][i] == entry.key);
         }
     }
-    rank.own += rank.first;
-    return rank;
+    return Rank(nearer, own, same);
 }
 
 // A fragment that is painted, until all are and its colour may take its place.
