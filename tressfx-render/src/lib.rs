@@ -25,6 +25,7 @@
 //! hair.render.tile_blend        compute  a group a tile: its fragments in order                             Technique::Tiles
 //!
 //! hair.render.composite         raster   tiles of pixels with hair: blended over the caller's picture       every technique
+//! hair.render.composite_compute compute  one thread a pixel of such tiles: the same, with storage_target    every technique
 //!
 //! hair.render.seen_keys         compute  one thread a strand segment: the fragment a pixel is seen to have  velocity_output
 //! hair.render.seen_segments     compute  one thread a strand segment: which segment that is of              velocity_output

@@ -3,6 +3,7 @@
 //! Functions have the names of the kernels and take the view and the contents of the buffers, in their order. Nothing is rounded to half floats or to integers, except that a fragment too faint for the 16
 //! bits of its alpha does not exist here either.
 
+mod composite_compute;
 mod coverage;
 mod fill;
 mod image;
@@ -34,6 +35,7 @@ use crate::lights::STORED_LIGHTS;
 use crate::uniforms::SectionUniform;
 
 pub use crate::scattering::FibreTable;
+pub use composite_compute::composite_compute;
 pub use coverage::coverage;
 pub use fill::{Fragment, fill};
 pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};

@@ -50,7 +50,7 @@ pub struct TilesDesc {
     pub places: u32,
     /// Tiles with hair up to which the pixels of each are divided among 16 groups, not among four: where hair covers little of the
     /// picture, more of the device has work. The picture is the same. Best is about as many as the device can blend at once, each by four
-    /// groups of 192 lanes. None: [`TilesDesc::FEW_TILES`], and 0 on a CPU.
+    /// groups of 160 lanes. None: [`TilesDesc::FEW_TILES`], and 0 on a CPU.
     pub few_tiles: Option<u32>,
 }
 

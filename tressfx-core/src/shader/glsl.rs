@@ -5,10 +5,14 @@ use naga::proc::BoundsCheckPolicies;
 
 use super::emit::Emitted;
 use super::{Shader, ShaderStage, SlotKind};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::format::Format;
 
 /// Writes a stage. Its buffers and textures have the names of the WGSL behind a `g_`, so that none is a word of GLSL.
 pub(super) fn write(shader: &Shader, stage: ShaderStage, version: glsl::Version) -> Result<Emitted> {
+    if version.is_es() {
+        check_images(shader)?;
+    }
     let plain = with_plain_textures(shader)?;
     let shader = plain.as_ref().unwrap_or(shader);
     let binding = |number| naga::ResourceBinding { group: 0, binding: number };
@@ -33,6 +37,22 @@ pub(super) fn write(shader: &Shader, stage: ShaderStage, version: glsl::Version)
         }
     }
     Ok(Emitted { code: text.into_bytes(), entry_point: String::from("main"), extra: None })
+}
+
+/// OpenGL ES reads and writes no other textures in place than those with one channel of 32 bits.
+fn check_images(shader: &Shader) -> Result<()> {
+    let is_refused =
+        |kind| matches!(kind, SlotKind::ReadWriteTexture(format) if !matches!(format, Format::R32F | Format::R32Uint));
+    match shader.slots.iter().find(|slot| is_refused(slot.kind)) {
+        None => Ok(()),
+        Some(slot) => {
+            let message = format!(
+                "binding `{}`: GLSL ES reads and writes at once only textures with one channel of 32 bits",
+                slot.name
+            );
+            Err(Error::Shader { label: shader.label, message })
+        }
+    }
 }
 
 /// The shader reading depth as the first channel of a colour texture: the samplers that GLSL has for depth compare, and
