@@ -46,8 +46,9 @@ fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     let row = place.y * TILE + lane % TILE;
     if tile < tile_count() && row < view.size.y {
         var nearness = 1e30;
-        for (var x = place.x * TILE; x < min(place.x * TILE + TILE, view.size.x); x++) {
-            nearness = min(nearness, scene_nearness(vec2(x, row)));
+        for (var x = 0u; x < TILE; x++) {
+            // At the edge of the picture the last column counts again: with a fixed number of rounds all are read at once.
+            nearness = min(nearness, scene_nearness(vec2(min(place.x * TILE + x, view.size.x - 1u), row)));
         }
         // Numbers that are not negative are in the order of their bits.
         atomicMin(&farthest[own], bitcast<u32>(max(nearness, 0.0)));
