@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 
+use crate::channel::Channel;
 use crate::color;
 use crate::filter::Separable;
 
@@ -22,7 +23,7 @@ struct Perceived {
 }
 
 /// The difference at every pixel, from 0 to 1, row by row. Both pictures have the same size.
-pub(crate) fn differences(a: &[[u8; 3]], b: &[[u8; 3]], width: usize) -> Vec<f32> {
+pub(crate) fn differences<C: Channel>(a: &[[C; 3]], b: &[[C; 3]], width: usize) -> Vec<f32> {
     let [a, b] = [a, b].map(|rgb| Perceived::new(rgb, width));
     let remap = Remap::new();
     let colors = a.colors.iter().zip(&b.colors).map(|(a, b)| remap.apply(color::hyab(*a, *b)));
@@ -31,9 +32,9 @@ pub(crate) fn differences(a: &[[u8; 3]], b: &[[u8; 3]], width: usize) -> Vec<f32
 }
 
 impl Perceived {
-    fn new(rgb: &[[u8; 3]], width: usize) -> Self {
-        let light = color::linear_steps();
-        let linear = |texel: &[u8; 3]| Vec3::from_array(texel.map(|step| light[usize::from(step)]));
+    fn new<C: Channel>(rgb: &[[C; 3]], width: usize) -> Self {
+        let light = C::light();
+        let linear = |texel: &[C; 3]| Vec3::from_array(texel.map(|level| light[level.into() as usize]));
         let opponents: Vec<Vec4> = rgb.iter().map(|texel| color::opponent(linear(texel))).collect();
         let filtered = Separable::contrast_sensitivity(PIXELS_PER_DEGREE).apply(&opponents, width);
         let colors = filtered.into_iter().map(color::appearance).collect();
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_difference_of_one_pixel_stays_near_that_pixel() {
-        let even = vec![[128; 3]; 64 * 64];
+        let even = vec![[128u8; 3]; 64 * 64];
         let mut dotted = even.clone();
         dotted[32 * 64 + 32] = [255; 3];
         let differences = differences(&even, &dotted, 64);

@@ -63,3 +63,23 @@ fn the_means_are_those_of_the_authors() {
         }
     }
 }
+
+/// A ramp of 16 bits, brighter by so many of its steps.
+fn deep(more: u32) -> Picture<u16> {
+    let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
+    let channels = places.flat_map(|(x, y)| {
+        let color = [200 * x + 17 * y, 300 * y + 11 * x, 40_000 - 100 * x - 150 * y];
+        let [r, g, b] = color.map(|channel| (channel + more) as u16);
+        [r, g, b, u16::MAX]
+    });
+    Picture::new(SIZE, channels.collect()).unwrap()
+}
+
+/// For these the authors' program was given floats.
+#[test]
+fn the_means_of_pictures_of_sixteen_bits_are_those_of_the_authors() {
+    for (more, mean) in [(40, 0.010_818_6), (90, 0.019_179_8)] {
+        let ours = compare(&deep(0), &deep(more)).unwrap().flip_mean;
+        assert!((ours - mean).abs() < 2e-5, "{more}: {ours} against {mean}");
+    }
+}

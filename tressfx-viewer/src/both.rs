@@ -24,6 +24,7 @@ pub(crate) fn run(args: &Render) -> Result<()> {
         one.coverage_out = args.coverage_out.as_deref().map(|path| named(path, name));
         one.velocity_out = args.velocity_out.as_deref().map(|path| named(path, name));
         one.linear_out = args.linear_out.as_deref().map(|path| named(path, name));
+        one.deep_out = args.deep_out.as_deref().map(|path| named(path, name));
         one.scene.stats = args.scene.stats.as_deref().map(|path| named(path, name));
         one.scene.trace = args.scene.trace.as_deref().map(|path| named(path, name));
         if args.scene.profile {

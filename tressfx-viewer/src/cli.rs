@@ -75,7 +75,7 @@ pub(crate) struct Convert {
 
 #[derive(Debug, Args)]
 pub(crate) struct Compare {
-    /// A .png of 8 bits a channel
+    /// A .png of 8 or 16 bits a channel
     #[arg(value_name = "A.png")]
     pub(crate) a: PathBuf,
     /// Another, of the same size
@@ -210,6 +210,9 @@ pub(crate) struct Render {
     /// Write the linear light of the last frame too, before exposure and tone mapping
     #[arg(long, value_name = "FILE.exr", value_parser = exr)]
     pub(crate) linear_out: Option<PathBuf>,
+    /// Write the last frame with 16 bits a channel too: to compare it with others without the rounding to 8
+    #[arg(long, value_name = "FILE.png", value_parser = png)]
+    pub(crate) deep_out: Option<PathBuf>,
     /// Fail if any hair found no room and is missing in the picture
     #[arg(long)]
     pub(crate) strict: bool,

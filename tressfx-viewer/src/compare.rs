@@ -18,8 +18,9 @@ const MOST_PIXELS: u64 = 1 << 25;
 
 /// Compares two files, prints the figures and writes the heat map if there is to be one.
 pub(crate) fn run(args: &Compare) -> Result<()> {
-    let [a, b] = [&args.a, &args.b].map(|path| read(path).with_context(|| path.display().to_string()));
-    let comparison = compare(&a?, &b?).with_context(|| format!("{}, {}", args.a.display(), args.b.display()))?;
+    let read = |path: &Path| read(path).with_context(|| path.display().to_string());
+    let comparison = compared(read(&args.a)?, read(&args.b)?)
+        .with_context(|| format!("{}, {}", args.a.display(), args.b.display()))?;
     if let Some(path) = &args.heat_map {
         write(path, &comparison.heat_map).with_context(|| path.display().to_string())?;
     }
@@ -30,18 +31,27 @@ pub(crate) fn run(args: &Compare) -> Result<()> {
     Ok(())
 }
 
+/// With 16 bits where one of them has so many.
+fn compared(a: DynamicImage, b: DynamicImage) -> Result<Comparison> {
+    let is_deep = |image: &DynamicImage| image.color().bytes_per_pixel() > image.color().channel_count();
+    let size = |image: &DynamicImage| [image.width(), image.height()];
+    let (sizes, deep) = ([size(&a), size(&b)], is_deep(&a) || is_deep(&b));
+    if deep {
+        let [a, b] = [a, b].map(|image| image.into_rgba16().into_raw());
+        return Ok(compare(&Picture::new(sizes[0], a)?, &Picture::new(sizes[1], b)?)?);
+    }
+    let [a, b] = [a, b].map(|image| image.into_rgba8().into_raw());
+    Ok(compare(&Picture::new(sizes[0], a)?, &Picture::new(sizes[1], b)?)?)
+}
+
 /// Reads a PNG; what its header says is checked before any of its pixels is decoded.
-fn read(path: &Path) -> Result<Picture> {
+fn read(path: &Path) -> Result<DynamicImage> {
     let decoder = PngDecoder::with_limits(BufReader::new(File::open(path)?), Limits::default())?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
         bail!("{width}x{height} pixels are more than {MOST_PIXELS}");
     }
-    if decoder.color_type().bytes_per_pixel() != decoder.color_type().channel_count() {
-        bail!("{:?}: only 8 bits a channel can be compared", decoder.original_color_type());
-    }
-    let rgba = DynamicImage::from_decoder(decoder)?.into_rgba8().into_raw();
-    Ok(Picture::new([width, height], rgba)?)
+    Ok(DynamicImage::from_decoder(decoder)?)
 }
 
 fn write(path: &Path, picture: &Picture) -> Result<()> {

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use glam::{Mat3, Vec3};
-use image::{Rgb, RgbImage};
+use image::{ImageBuffer, Rgb, RgbImage};
 
 /// How light becomes a picture.
 #[derive(Clone, Copy, Debug, Args)]
@@ -32,14 +32,27 @@ fn stops(text: &str) -> Result<f32, String> {
 
 impl Develop {
     /// Turns linear light, row by row, into a picture in sRGB.
-    pub(crate) fn developed(&self, light: impl IntoIterator<Item = Vec3>, size: [u32; 2]) -> RgbImage {
-        let (mut light, scale) = (light.into_iter(), self.exposure.exp2());
-        RgbImage::from_fn(size[0], size[1], |_, _| {
-            let light = light.next().expect("there is light for every pixel");
+    pub(crate) fn developed(&self, light: &[Vec3], size: [u32; 2]) -> RgbImage {
+        let mut levels = self.levels(light);
+        let mut next = || levels.next().expect("there is light for every pixel");
+        RgbImage::from_fn(size[0], size[1], |_, _| Rgb(next().map(|level| (level * 255.0 + 0.5) as u8)))
+    }
+
+    /// The same with 16 bits a channel.
+    pub(crate) fn deep(&self, light: &[Vec3], size: [u32; 2]) -> ImageBuffer<Rgb<u16>, Vec<u16>> {
+        let mut levels = self.levels(light);
+        let mut next = || levels.next().expect("there is light for every pixel");
+        ImageBuffer::from_fn(size[0], size[1], |_, _| Rgb(next().map(|level| (level * 65535.0 + 0.5) as u16)))
+    }
+
+    /// Levels from 0 to 1 in sRGB.
+    fn levels(&self, light: &[Vec3]) -> impl Iterator<Item = [f32; 3]> {
+        let scale = self.exposure.exp2();
+        light.iter().map(move |light| {
             // The comparison is false for what is no number.
             let scaled =
                 light.to_array().map(|channel| if channel > 0.0 { (scale * channel).min(f32::MAX) } else { 0.0 });
-            Rgb(self.tone_map.encoded(Vec3::from_array(scaled)).to_array().map(|level| (level * 255.0 + 0.5) as u8))
+            self.tone_map.encoded(Vec3::from_array(scaled)).to_array()
         })
     }
 }
@@ -107,7 +120,10 @@ mod tests {
 
     fn level(tone_map: ToneMap, exposure: f32, light: f32) -> u8 {
         let develop = Develop { exposure, tone_map };
-        develop.developed([Vec3::splat(light)], [1, 1])[(0, 0)][0]
+        let (light, size) = ([Vec3::splat(light)], [1, 1]);
+        let (level, deep) = (develop.developed(&light, size)[(0, 0)][0], develop.deep(&light, size)[(0, 0)][0]);
+        assert!((f32::from(deep) / 257.0 - f32::from(level)).abs() <= 0.502, "{level} and {deep}");
+        level
     }
 
     #[test]
@@ -145,7 +161,7 @@ mod tests {
     #[test]
     fn rows_come_out_in_order() {
         let develop = Develop { exposure: 0.0, tone_map: ToneMap::Knee };
-        let picture = develop.developed([Vec3::X, Vec3::Y], [1, 2]);
+        let picture = develop.developed(&[Vec3::X, Vec3::Y], [1, 2]);
         assert!(picture[(0, 0)][0] > 230 && picture[(0, 0)][1] == 0);
         assert!(picture[(0, 1)][1] > 230 && picture[(0, 1)][0] == 0);
     }

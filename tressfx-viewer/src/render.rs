@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use glam::{Vec3, Vec4};
 
 use crate::cli::Render;
@@ -90,8 +90,12 @@ fn frame(args: &Render, run: &mut Run, studio: &mut Studio, output: &mut Output,
 
 /// Takes the linear light of a frame that is wanted.
 fn keep(args: &Render, output: &mut Output, frame: u32, light: &[Vec3]) -> Result<()> {
-    if let Some(path) = args.linear_out.as_ref().filter(|_| frame + 1 == Run::frames(&args.scene)) {
+    let is_last = frame + 1 == Run::frames(&args.scene);
+    if let Some(path) = args.linear_out.as_ref().filter(|_| is_last) {
         write_linear(path, light, args.size)?;
     }
-    output.push(frame, args.develop.developed(light.iter().copied(), args.size))
+    if let Some(path) = args.deep_out.as_ref().filter(|_| is_last) {
+        args.develop.deep(light, args.size).save(path).with_context(|| path.display().to_string())?;
+    }
+    output.push(frame, args.develop.developed(light, args.size))
 }

@@ -79,7 +79,8 @@ fn level(linear: f32) -> u8 {
 #[test]
 fn linear_light_is_what_the_picture_is_developed_from() {
     let folder = folder("linear");
-    let picture = picture(&folder, &["--linear-out", "light.exr", "--exposure", "-2"]);
+    let words = ["--linear-out", "light.exr", "--deep-out", "deep.png", "--exposure", "-2"];
+    let picture = picture(&folder, &words);
     let light: Rgb32FImage = image::open(folder.join("light.exr")).unwrap().into_rgb32f();
     assert_eq!(light.dimensions(), (64, 48));
     let brightest = light.iter().copied().fold(0.0, f32::max);
@@ -88,6 +89,14 @@ fn linear_light_is_what_the_picture_is_developed_from() {
     for (light, developed) in light.iter().zip(picture.iter()) {
         assert!(level(0.25 * light).abs_diff(*developed) <= 1, "{light} {developed}");
     }
+    let deep = image::open(folder.join("deep.png")).unwrap();
+    assert_eq!(deep.color(), image::ColorType::Rgb16);
+    let mut between = 0;
+    for (deep, developed) in deep.into_rgb16().iter().zip(picture.iter()) {
+        assert!(deep.abs_diff(257 * u16::from(*developed)) <= 129, "{deep} {developed}");
+        between += usize::from(!deep.is_multiple_of(257));
+    }
+    assert!(between > 1000, "{between} channels are between two steps of 8 bits");
     let output = render(&folder, &["--linear-out", "light.png"]);
     assert!(String::from_utf8_lossy(&output.stderr).contains("the ending must be .exr"));
     let output = render(&folder, &["--exposure", "21"]);
