@@ -11,7 +11,7 @@ use std::path::Path;
 
 use tressfx_asset::builtin::Builtin;
 use tressfx_core::asset::{AssetFormat, HairAsset};
-use tressfx_core::backend::{Backend, Format, TextureDesc};
+use tressfx_core::backend::{Backend, Caps, Format, TextureDesc};
 use tressfx_core::body::{Influences, Morph, MorphOffset};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::{Command, PassList};
@@ -206,7 +206,9 @@ fn interpolation(backend: &mut NullBackend, list: &mut PassList) {
 
 /// Lists with every pass that there is.
 fn everything() -> PassList {
-    let mut backend = NullBackend::default();
+    let mut caps = Caps::webgpu_default();
+    caps.read_write_textures = true;
+    let mut backend = NullBackend::new(caps);
     let groom = Builtin::parse("curly:8:6").unwrap();
     let strands = Strands::new(&groom.asset(), &StrandOptions { follows: Some(2), ..Default::default() }).unwrap();
     let rods = SectionDesc::new(&strands, SimParams::default());
@@ -262,6 +264,9 @@ fn everything() -> PassList {
         let draw = SectionDraw::new(&section, &glass, sim.pose());
         renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     }
+    let desc = RenderDesc::new(size, Format::Rgba16F).storage_target(true);
+    let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+    renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[draw]).unwrap();
     let desc = RenderDesc::new(size, Format::Rgba16F).velocity_output(true);
     let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
     renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets.velocity(velocity))], &[draw]).unwrap();

@@ -192,13 +192,13 @@ pub(super) fn what_compute_writes_is_sampled_and_drawn_over(t: &mut Subject) {
     assert_eq!(t.texels(picture), encode(Format::Rgba16F, [2.0; 4]).repeat(32));
 }
 
-/// Adds half of what a texel of 8 x 4 has to it, and its place.
-fn changer(format: &str) -> ShaderSource {
+/// Halves what a texel of 8 x 4 has, and adds its place and more, in steps of so much.
+fn changer(format: &str, step: f32) -> ShaderSource {
     let text = format!(
         "@group(0) @binding(0) var picture: texture_storage_2d<{format}, read_write>;
         @compute @workgroup_size(8, 4) fn change(@builtin(local_invocation_id) at: vec3<u32>) {{
             let before = textureLoad(picture, at.xy);
-            textureStore(picture, at.xy, 0.5 * before + vec4<f32>(vec2<f32>(at.xy) / 51.0, 0.2, 0.5));
+            textureStore(picture, at.xy, 0.5 * before + {step:?} * vec4<f32>(vec2<f32>(at.xy), 32.0, 64.0));
         }}"
     );
     source("suite.change", text.leak())
@@ -206,29 +206,31 @@ fn changer(format: &str) -> ShaderSource {
 
 pub(super) fn compute_changes_textures_in_place(t: &mut Subject) {
     if !t.backend.caps().read_write_textures {
-        let shader = Arc::new(Shader::new(&changer("rgba16float"), &Specialization::new()).expect("a shader"));
+        let shader = Arc::new(Shader::new(&changer("rgba16float", 1.0), &Specialization::new()).expect("a shader"));
         let refused = t.backend.create_compute(&ComputeDesc::new(shader));
         assert!(matches!(refused, Err(Error::Unsupported { need: Need::ReadWriteTextures, .. })), "{refused:?}");
         return;
     }
-    for (format, name) in [(Format::Rgba8, "rgba8unorm"), (Format::Rgba16F, "rgba16float"), (Format::R32F, "r32float")]
-    {
-        let kernel = t.compute(&changer(name));
+    // Steps that the format has, so that nothing is rounded on the way.
+    let formats = [
+        (Format::Rgba8, "rgba8unorm", 1.0 / 255.0),
+        (Format::Rgba16F, "rgba16float", 1.0 / 256.0),
+        (Format::R32F, "r32float", 1.0 / 256.0),
+    ];
+    for (format, name, step) in formats {
+        let kernel = t.compute(&changer(name, step));
         let picture = t.storage_texture([8, 4], format);
         // Drawn to, changed by two passes of which one reads what the other writes, and drawn over again.
-        t.draw(picture, Load::Clear([0.4, 0.4, 0.4, 1.0]), Vec::new());
+        t.draw(picture, Load::Clear([128.0 * step; 4]), Vec::new());
         t.dispatch(&kernel, &[("picture", picture.into())], [1; 3]);
         t.dispatch(&kernel, &[("picture", picture.into())], [1; 3]);
         t.draw(picture, Load::Keep, Vec::new());
         let found = t.texels(picture);
         for (i, texel) in found.chunks(format.bytes() as usize).enumerate() {
-            let twice = |first: f32, more: f32| 0.5 * (0.5 * first + more) + more;
-            let [x, y] = [i % 8, i / 8].map(|at| at as f32 / 51.0);
-            super::formats::assert_rounds_to(
-                format,
-                texel,
-                [twice(0.4, x), twice(0.4, y), twice(0.4, 0.2), twice(1.0, 0.5)],
-            );
+            // Half of 128, and more; half of that, and more again.
+            let twice = |more: f32| step * (32.0 + 1.5 * more);
+            let [x, y] = [i % 8, i / 8].map(|at| at as f32);
+            super::formats::assert_rounds_to(format, texel, [twice(x), twice(y), twice(32.0), twice(64.0)]);
         }
     }
     let text = "@group(0) @binding(0) var picture: texture_storage_2d<r32uint, read_write>;
