@@ -4,8 +4,6 @@ mod support;
 
 use glam::camera::rh;
 use glam::{DVec4, Vec3};
-use tressfx_asset::mesh::Mesh;
-use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Difference, Groom, Picture, Screen};
 use tressfx_core::backend::{Caps, DepthOrder, Format, Run, TextureDesc};
 use tressfx_core::error::{Error, Need};
@@ -17,8 +15,8 @@ use tressfx_render::{
     reference,
 };
 
-use support::gpu;
-use support::hair::varied;
+use support::backends;
+use support::hair::{varied, wall};
 
 /// Neither is a multiple of the edge of a tile.
 const SIZE: [u32; 2] = [94, 61];
@@ -37,27 +35,11 @@ fn techniques() -> [Technique; 5] {
     ]
 }
 
-/// Both backends, or none where there is no GPU.
-fn backends() -> Vec<Box<dyn Run>> {
-    let wgpu = gpu().map(|gpu| gpu as Box<dyn Run>);
-    wgpu.into_iter().flat_map(|wgpu| [wgpu, Box::new(VulkanBackend::headless().unwrap())]).collect()
-}
-
 fn screen(backend: Box<dyn Run>, technique: Technique, storage_target: bool) -> Screen {
     assert!(backend.caps().read_write_textures, "both backends can on every device of theirs");
     Screen::new(backend, |setup| {
         (setup.technique, setup.size, setup.storage_target) = (technique, SIZE, storage_target);
     })
-}
-
-/// What is behind the hair.
-fn wall(z: f32) -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, z);
-    Mesh {
-        positions: vec![corner(-0.6, -5.0), corner(5.0, -5.0), corner(-0.6, 5.0), corner(5.0, 5.0)],
-        normals: vec![Vec3::Z; 4],
-        indices: vec![0, 1, 2, 2, 1, 3],
-    }
 }
 
 /// Four half floats.
@@ -78,7 +60,7 @@ fn views() -> [View; 2] {
 
 /// Hair before a wall, and from two sides at once.
 fn pictures(screen: &mut Screen, groom: &Groom) -> [Picture; 2] {
-    [screen.scene(&[&wall(-0.4)], &[groom]), screen.views(&views(), &[groom])]
+    [screen.scene(&[&wall(-0.6, -0.4)], &[groom]), screen.views(&views(), &[groom])]
 }
 
 #[test]
@@ -107,11 +89,11 @@ fn the_picture_is_that_which_fragment_shaders_leave() {
 fn hair_lies_over_the_picture_as_in_f64_and_the_rest_keeps_every_bit() {
     for backend in backends() {
         let mut screen = screen(backend, TilesDesc::default().into(), true);
-        let bare = screen.scene(&[&wall(BEHIND)], &[]);
+        let bare = screen.scene(&[&wall(-0.6, BEHIND)], &[]);
         let groom = Groom::wavy(60, 16, 3, varied());
         // All of it is before the wall.
         let hair = screen.hair(&[&groom]);
-        let haired = screen.scene(&[&wall(BEHIND)], &[&groom]);
+        let haired = screen.scene(&[&wall(-0.6, BEHIND)], &[&groom]);
         let mut counts = [0, 0];
         for (i, hair) in hair.bytes.chunks(8).enumerate() {
             let [before, after] = [&bare, &haired].map(|picture| &picture.bytes[8 * i..8 * i + 8]);

@@ -4,10 +4,8 @@ mod support;
 
 use glam::camera::rh;
 use glam::{DVec4, Vec3};
-use tressfx_asset::mesh::Mesh;
-use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Groom, NO_HAIR, Picture, Screen, Setup};
-use tressfx_core::backend::{DepthOrder, Format, Run, TextureDesc};
+use tressfx_core::backend::{DepthOrder, Format, TextureDesc};
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{
@@ -15,8 +13,8 @@ use tressfx_render::{
     TilesDesc, ViewDraw, reference,
 };
 
-use support::hair::{faint, varied};
-use support::{gpu, screen};
+use support::hair::{faint, varied, wall};
+use support::{backends, screen};
 
 /// The alpha below which a fragment is faint.
 const FAINT: f64 = 0.02;
@@ -39,11 +37,6 @@ fn techniques() -> Vec<Technique> {
         TilesDesc::default().into(),
         AutoDesc::default().into(),
     ]
-}
-
-fn backends() -> Vec<Box<dyn Run>> {
-    let wgpu = gpu().map(|gpu| gpu as Box<dyn Run>);
-    wgpu.into_iter().flat_map(|wgpu| [wgpu, Box::new(VulkanBackend::headless().unwrap())]).collect()
 }
 
 fn with(technique: impl Into<Technique>, hair_output: bool) -> impl FnOnce(&mut Setup) {
@@ -116,16 +109,6 @@ fn alphas(picture: &Picture) -> Vec<f64> {
     picture.pixels().iter().map(|pixel| pixel.w).collect()
 }
 
-/// A square across the line of sight, with its left edge in the middle.
-fn wall() -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.1);
-    Mesh {
-        positions: vec![corner(0.0, -5.0), corner(5.0, -5.0), corner(0.0, 5.0), corner(5.0, 5.0)],
-        normals: vec![Vec3::Z; 4],
-        indices: vec![0, 1, 2, 2, 1, 3],
-    }
-}
-
 #[test]
 fn depth_and_coverage_are_as_in_f64_and_the_picture_is_the_same() {
     let grooms = [("dense", Groom::wavy(300, 16, 3, varied())), ("faint", Groom::wavy(120, 16, 5, faint()))];
@@ -162,7 +145,7 @@ fn depth_is_that_of_the_scene_before_which_hair_is_seen() {
             }) else {
                 return;
             };
-            let hair = screen.scene(&[&wall()], &[&groom]).hair;
+            let hair = screen.scene(&[&wall(0.0, 0.1)], &[&groom]).hair;
             let depth = screen.depth();
             let pixels = fragments(&screen, &groom, &|[x, y]| depth[(y * 96 + x) as usize]);
             let nearer = |a: f32, b: f32| if order == DepthOrder::Standard { a <= b } else { a >= b };

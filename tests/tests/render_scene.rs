@@ -3,23 +3,12 @@
 mod support;
 
 use glam::{DVec4, Vec3};
-use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
 use tressfx_render::reference;
 
-use support::hair::material;
+use support::hair::{material, wall};
 use support::screen;
-
-/// A square across the line of sight, with its left edge at `left`.
-fn wall(left: f32, z: f32) -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, z);
-    Mesh {
-        positions: vec![corner(left, -5.0), corner(5.0, -5.0), corner(left, 5.0), corner(5.0, 5.0)],
-        normals: vec![Vec3::Z; 4],
-        indices: vec![0, 1, 2, 2, 1, 3],
-    }
-}
 
 #[test]
 fn what_is_in_front_hides_hair_and_what_is_behind_does_not() {

@@ -3,13 +3,12 @@
 mod support;
 
 use glam::{DVec4, Vec3};
-use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Counters, Material, ShortCutDesc, reference};
 
-use support::hair::{is_sound, varied};
+use support::hair::{is_sound, varied, wall};
 use support::screen;
 
 const VARIANTS: [(u32, bool); 6] = [(1, false), (3, false), (8, false), (1, true), (3, true), (8, true)];
@@ -107,21 +106,11 @@ fn strands_of_one_depth_are_the_same_in_every_order() {
     }
 }
 
-/// A square across the line of sight, to the right of the middle.
-fn wall() -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
-    Mesh {
-        positions: vec![corner(0.0, -5.0), corner(5.0, -5.0), corner(0.0, 5.0), corner(5.0, 5.0)],
-        normals: vec![Vec3::Z; 4],
-        indices: vec![0, 1, 2, 2, 1, 3],
-    }
-}
-
 #[test]
 fn hair_behind_the_scene_is_left_out_and_the_depth_of_the_scene_is_untouched() {
     let groom = Groom::wavy(300, 16, 2, varied());
     for (order, ordered) in [(DepthOrder::Reverse, false), (DepthOrder::Standard, true)] {
-        let (variant, wall) = (shortcut(3, ordered), wall());
+        let (variant, wall) = (shortcut(3, ordered), wall(0.0, 0.0));
         let Some(mut lists) = screen(|setup| setup.camera.depth = order) else { return };
         let expected = lists.scene(&[&wall], &[&groom]).counters;
         let Some(mut screen) = screen(|setup| {

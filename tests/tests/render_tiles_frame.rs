@@ -4,13 +4,12 @@ mod support;
 
 use glam::Vec3;
 use glam::camera::rh;
-use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Difference, Groom};
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{View, Viewport};
 use tressfx_render::{Counters, reference};
 
-use support::hair::{endless, faint, tiles, varied};
+use support::hair::{endless, faint, tiles, varied, wall};
 use support::screen;
 
 #[test]
@@ -55,16 +54,6 @@ fn any_lens_and_both_orders_of_depth() {
         eprintln!("{order:?}, {projection}: {difference:?}");
         assert!(picture.counters.pixels_with_hair > 900, "{:?}", picture.counters);
         assert!(difference.max < 0.0008 && difference.psnr > 86.0, "{projection}: {difference:?}");
-    }
-}
-
-/// A square across the line of sight, with its left edge at `left`.
-fn wall(left: f32, z: f32) -> Mesh {
-    let corner = |x: f32, y: f32| Vec3::new(x, y, z);
-    Mesh {
-        positions: vec![corner(left, -5.0), corner(5.0, -5.0), corner(left, 5.0), corner(5.0, 5.0)],
-        normals: vec![Vec3::Z; 4],
-        indices: vec![0, 1, 2, 2, 1, 3],
     }
 }
 

@@ -4,7 +4,6 @@ mod support;
 
 use glam::camera::rh;
 use glam::{DVec2, DVec4, Mat4, Quat, Vec2, Vec3};
-use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Groom, Setup};
 use tressfx_core::backend::{DepthOrder, Format, Run, TextureDesc};
 use tressfx_core::id::TextureId;
@@ -16,8 +15,8 @@ use tressfx_render::{
     Targets, Technique, TilesDesc, VELOCITY_FORMAT, ViewDraw, reference,
 };
 
-use support::gpu;
 use support::hair::{faint, varied};
+use support::{backends, gpu};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -37,11 +36,6 @@ fn techniques() -> Vec<Technique> {
         TilesDesc::default().into(),
         AutoDesc::default().into(),
     ]
-}
-
-fn backends() -> Vec<Box<dyn Run>> {
-    let wgpu = gpu().map(|gpu| gpu as Box<dyn Run>);
-    wgpu.into_iter().flat_map(|wgpu| [wgpu, Box::new(VulkanBackend::headless().unwrap())]).collect()
 }
 
 /// A groom now, and where its vertices were.

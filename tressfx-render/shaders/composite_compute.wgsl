@@ -1,6 +1,6 @@
-// The resolved hair lies over the picture, which a compute pass can read and write: a group a tile with hair, or several where there are many.
+// The resolved hair lies over the picture, which a compute pass can read and write: a group a tile with hair, or several tiles where there are many.
 
-import package::tile::{TILE, resolved_index};
+import package::tile::{TILE, place_of_tile, resolved_index};
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -29,9 +29,8 @@ fn lay_over(slot: u32, pixel: vec2<u32>) {
 fn composite_compute(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                      @builtin(local_invocation_id) lane: vec3<u32>) {
     let count = drawn[0] / 6u;
-    let columns = (view.size.x + TILE - 1u) / TILE;
     for (var i = group.x; i < count; i += groups.x) {
         let listed = tiles[i];
-        lay_over(listed.y, vec2(listed.x % columns, listed.x / columns) * TILE + lane.xy);
+        lay_over(listed.y, place_of_tile(listed.x, view.size) * TILE + lane.xy);
     }
 }

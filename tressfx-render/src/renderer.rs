@@ -25,7 +25,12 @@ pub(crate) const HEADROOM: f64 = 1.25;
 
 /// What a pool is made for that has to hold this much.
 pub(crate) fn with_headroom(wanted: u64) -> u64 {
-    (wanted as f64 * HEADROOM) as u64
+    times(wanted, HEADROOM)
+}
+
+/// So many times as much.
+pub(crate) fn times(wanted: u64, factor: f64) -> u64 {
+    (wanted as f64 * factor) as u64
 }
 
 /// Describes a renderer that is to be made.

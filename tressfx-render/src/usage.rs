@@ -6,9 +6,6 @@ const FRAMES: u64 = 120;
 /// Measurements that these frames must have brought at least.
 const MEASUREMENTS: u64 = 30;
 
-/// A pool is made smaller that is more than so many times as large as what was needed.
-const SURPLUS: f64 = 1.6;
-
 /// The most that was needed of several things since some frames.
 #[derive(Debug)]
 pub(crate) struct Usage<const N: usize> {
@@ -44,9 +41,9 @@ impl<const N: usize> Usage<N> {
     }
 }
 
-/// Whether a pool of this size is much larger than what it needs.
-pub(crate) fn is_surplus(capacity: u64, needed: u64) -> bool {
-    capacity as f64 > needed as f64 * SURPLUS
+/// Whether a pool of this size is more than so many times as large as what it needs.
+pub(crate) fn is_surplus(capacity: u64, needed: u64, surplus: f64) -> bool {
+    capacity as f64 > needed as f64 * surplus
 }
 
 #[cfg(test)]

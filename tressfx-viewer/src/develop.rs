@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use glam::{Mat3, Vec3};
-use image::{ImageBuffer, Rgb, RgbImage};
+use image::{ImageBuffer, Pixel, Primitive, Rgb, RgbImage};
 
 /// How light becomes a picture.
 #[derive(Clone, Copy, Debug, Args)]
@@ -33,26 +33,31 @@ fn stops(text: &str) -> Result<f32, String> {
 impl Develop {
     /// Turns linear light, row by row, into a picture in sRGB.
     pub(crate) fn developed(&self, light: &[Vec3], size: [u32; 2]) -> RgbImage {
-        let mut levels = self.levels(light);
-        let mut next = || levels.next().expect("there is light for every pixel");
-        RgbImage::from_fn(size[0], size[1], |_, _| Rgb(next().map(|level| (level * 255.0 + 0.5) as u8)))
+        self.picture(light, size, |level| (level * 255.0 + 0.5) as u8)
     }
 
     /// The same with 16 bits a channel.
     pub(crate) fn deep(&self, light: &[Vec3], size: [u32; 2]) -> ImageBuffer<Rgb<u16>, Vec<u16>> {
-        let mut levels = self.levels(light);
-        let mut next = || levels.next().expect("there is light for every pixel");
-        ImageBuffer::from_fn(size[0], size[1], |_, _| Rgb(next().map(|level| (level * 65535.0 + 0.5) as u16)))
+        self.picture(light, size, |level| (level * 65535.0 + 0.5) as u16)
     }
 
-    /// Levels from 0 to 1 in sRGB.
-    fn levels(&self, light: &[Vec3]) -> impl Iterator<Item = [f32; 3]> {
-        let scale = self.exposure.exp2();
-        light.iter().map(move |light| {
+    /// A picture of what is made of levels from 0 to 1 in sRGB.
+    fn picture<C: Primitive>(
+        &self,
+        light: &[Vec3],
+        size: [u32; 2],
+        of: impl Fn(f32) -> C,
+    ) -> ImageBuffer<Rgb<C>, Vec<C>>
+    where
+        Rgb<C>: Pixel<Subpixel = C>,
+    {
+        let (mut light, scale) = (light.iter(), self.exposure.exp2());
+        ImageBuffer::from_fn(size[0], size[1], |_, _| {
+            let light = light.next().expect("there is light for every pixel");
             // The comparison is false for what is no number.
             let scaled =
                 light.to_array().map(|channel| if channel > 0.0 { (scale * channel).min(f32::MAX) } else { 0.0 });
-            self.tone_map.encoded(Vec3::from_array(scaled)).to_array()
+            Rgb(self.tone_map.encoded(Vec3::from_array(scaled)).to_array().map(&of))
         })
     }
 }

@@ -1,6 +1,8 @@
 //! Hair and settings that several tests of rendering share.
 #![allow(dead_code, reason = "each test takes what it needs")]
 
+use glam::Vec3;
+use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Picture, Setup};
 use tressfx_render::{Material, TilesDesc};
 
@@ -24,6 +26,16 @@ pub(crate) fn faint() -> Material {
         m.fibre_radius = Some(0.01);
         (m.opacity, m.tip_opacity) = (0.03, 0.02);
     })
+}
+
+/// A square across the line of sight, with its left edge at `left`.
+pub(crate) fn wall(left: f32, z: f32) -> Mesh {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, z);
+    Mesh {
+        positions: vec![corner(left, -5.0), corner(5.0, -5.0), corner(left, 5.0), corner(5.0, 5.0)],
+        normals: vec![Vec3::Z; 4],
+        indices: vec![0, 1, 2, 2, 1, 3],
+    }
 }
 
 pub(crate) fn tiles(setup: &mut Setup) {

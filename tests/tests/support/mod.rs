@@ -3,9 +3,11 @@
 
 pub(crate) mod hair;
 
+use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_wgpu::WgpuBackend;
 use tressfx_conformance::render::{Screen, Setup};
 use tressfx_conformance::sim::Rig;
+use tressfx_core::backend::Run;
 use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_sim::SimParams;
@@ -25,6 +27,12 @@ pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
         }
         Err(error) => panic!("{error}"),
     }
+}
+
+/// A backend of each kind, or none where there is no [`gpu`].
+pub(crate) fn backends() -> Vec<Box<dyn Run>> {
+    let wgpu = gpu().map(|gpu| gpu as Box<dyn Run>);
+    wgpu.into_iter().flat_map(|wgpu| [wgpu, Box::new(VulkanBackend::headless().unwrap())]).collect()
 }
 
 /// A screen on a [`gpu`].

@@ -12,6 +12,9 @@ use crate::counters::ViewCounters;
 use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
 use crate::usage::is_surplus;
+
+/// A pool is made smaller that is more than so many times as large as what was needed.
+const SURPLUS: f64 = 1.6;
 use crate::views::BoundView;
 
 /// Bytes of a fragment: depth key, colour and alpha, next.
@@ -97,7 +100,7 @@ impl NodePool {
     /// Nodes for `needed` fragments and some more, where there is much more room; it changes nothing yet.
     pub(crate) fn prepare_smaller(&self, backend: &mut dyn Backend, needed: u64) -> Result<Option<Nodes>> {
         let capacity = with_headroom(needed).clamp(u64::from(self.least), u64::from(self.largest)) as u32;
-        let shrinks = capacity < self.capacity && is_surplus(self.capacity.into(), needed);
+        let shrinks = capacity < self.capacity && is_surplus(self.capacity.into(), needed, SURPLUS);
         if shrinks { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
     }
 

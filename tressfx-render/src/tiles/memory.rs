@@ -12,10 +12,11 @@ use super::kernels::bin_grid;
 use super::layout::{MAX_VERTICES, SLICES, TilesUniform, drawn_vertices};
 use crate::counters::ViewCounters;
 use crate::output::Output;
-use crate::renderer::{HEADROOM, with_headroom};
+use crate::renderer::{HEADROOM, times, with_headroom};
 use crate::resolved::{Resolved, storage, tile_count};
 use crate::strands::SectionDraw;
 use crate::technique::Wanted;
+use crate::usage::is_surplus;
 use crate::views::MAX_VIEWS;
 
 /// Kinds of tiles by the number of their references.
@@ -48,17 +49,9 @@ const SURPLUS: f64 = 1.2;
 /// There is too little room where what is needed, times this, has none: it grows before anything is dropped.
 const TIGHT: f64 = 1.04;
 
-fn times(needed: u64, factor: f64) -> u64 {
-    (needed as f64 * factor) as u64
-}
-
 /// Whether the next frame may need more than there is room for.
 pub(crate) fn is_tight(room: u64, needed: u64) -> bool {
     times(needed, TIGHT) > room
-}
-
-fn is_surplus(room: u64, needed: u64) -> bool {
-    room > times(needed, SURPLUS)
 }
 
 /// Bytes of a grid of groups.
@@ -298,7 +291,7 @@ impl Memory {
         backend: &mut dyn Backend,
         Wanted { kept: references, tiles, vertices }: Wanted,
     ) -> Result<()> {
-        if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into())) {
+        if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into()), SURPLUS) {
             let slots = times(tiles, SETTLED).max(LEAST_SLOTS.into()).min(tile_count(self.screen.size).into()) as u32;
             let colors = self.screen.resolved.more_colors(backend, slots)?;
             self.screen.replace_colors(backend, colors, slots);
@@ -306,9 +299,9 @@ impl Memory {
         let wanted = times(references, SETTLED).max(LEAST_REFERENCES.into());
         let count = wanted.min(self.most_references.into()) as u32;
         let shrinks = count < self.references.count
-            && is_surplus(self.references.count.into(), references.max(LEAST_REFERENCES.into()));
+            && is_surplus(self.references.count.into(), references.max(LEAST_REFERENCES.into()), SURPLUS);
         let smaller = if shrinks { Some(References::new(backend, count)?) } else { None };
-        if is_surplus(self.vertices.count.into(), vertices.max(LEAST_VERTICES.into())) {
+        if is_surplus(self.vertices.count.into(), vertices.max(LEAST_VERTICES.into()), SURPLUS) {
             let count = times(vertices, SETTLED).max(LEAST_VERTICES.into());
             let smaller = Vertices::new(backend, count.min(self.most_vertices.into()) as u32)?;
             self.replace_vertices(backend, smaller);
