@@ -92,6 +92,30 @@ fn the_same_bits_every_time_and_on_both_backends_whatever_the_order_of_sections(
     }
 }
 
+/// Units end where those of the frame before have ended: of other hair that is far too near, too far, too dense or too loose.
+#[test]
+fn what_the_frame_before_tells_of_units_changes_no_bit() {
+    let grooms = [
+        Groom::wavy(60, 12, 1, varied()),
+        Groom::wavy(6000, 16, 6, varied()),
+        Groom::wavy(9000, 8, 2, faint()),
+        Groom::wavy(1500, 16, 3, varied()),
+    ];
+    for (few_tiles, places) in [(0, 1), (10_000, 1), (0, 4)] {
+        let technique = TilesDesc::default().few_tiles(few_tiles).places(places);
+        let with = |setup: &mut Setup| setup.technique = technique.into();
+        let alone = |groom| Some(screen(with)?.hair(&[groom]).bytes);
+        let Some(alone) = grooms.iter().map(alone).collect::<Option<Vec<_>>>() else { return };
+        let Some(mut screen) = screen(with) else { return };
+        for turn in 0..12 {
+            // Each comes behind each other one.
+            let groom = [0, 1, 2, 3, 2, 1, 3, 0, 2, 0, 3, 1][turn];
+            let bytes = screen.hair(&[&grooms[groom]]).bytes;
+            assert!(bytes == alone[groom], "{few_tiles} few tiles, {places} places: groom {groom} in turn {turn}");
+        }
+    }
+}
+
 #[test]
 fn too_many_fragments_of_one_depth_are_their_mean() {
     let across =

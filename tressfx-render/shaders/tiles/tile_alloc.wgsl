@@ -144,7 +144,7 @@ fn tile_alloc(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
     var place_of_tile = 0u;
     if part == 0u && info.waiting == ALL_PARTS {
         // It is known again when the tile has been blended.
-        atomicStore(&state.hidden[tile], 0u);
+        atomicStore(&state.tiles[tile].hidden, 0u);
     }
     if part == 0u && count > 0u {
         // A tile with more than this ends behind the last reference that there is room for.

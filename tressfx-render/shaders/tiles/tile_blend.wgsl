@@ -1,4 +1,4 @@
-// The pixels of a tile, from front to back, one group a quarter of a tile, or a part of it where few tiles have hair. It goes through the slices in units: as many slices as
+// The pixels of a tile, from front to back, one group a quarter of a tile, or a part of it where few tiles have hair. It goes through the slices in units: as much of them as
 // should fill the list of fragments. The fragments of a unit are sorted by pixel and depth, and blended; pixels that have become
 // opaque take no more; the quarter ends when all are closed.
 //
@@ -6,6 +6,7 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
+import package::cuts::{pack_cuts, recall_cuts};
 import package::entries::{
     Painted, add, color_at, empty, ends, entry_at, gather, has_ties, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
     total, with_one_more,
@@ -313,6 +314,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
             last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
         }
         seen_to = -1.0;
+        recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);
@@ -326,7 +328,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
         atomicOr(&open, 1u << lane);
     }
     if lane == 0u {
-        plan = unit_from(0u, SLICES, FIRST_RATE * f32(countOneBits(own.parts)) / f32(PARTS));
+        plan = unit_from(0u, 0u, 0.0, FIRST_RATE * f32(countOneBits(own.parts)) / f32(PARTS));
     }
 }
 
@@ -395,7 +397,11 @@ fn blend_parts(own: Job, lane: u32) {
     if is_done && lane == 0u {
         atomicAdd(&state.counters.pixels_with_hair, atomicLoad(&hairy_pixels));
         atomicAdd(&state.counters.fragments, atomicLoad(&blended_fragments));
-        atomicMax(&state.hidden[own.tile], hidden_by());
+        atomicMax(&state.tiles[own.tile].hidden, hidden_by());
+        if (own.parts & 1u) == 1u {
+            // Where a quarter is divided among groups, one of them tells for all.
+            atomicStore(&state.tiles[own.tile].cuts[own.quarter], pack_cuts());
+        }
         atomicAnd(&infos[own.tile].waiting, ~(own.parts << (PARTS * own.quarter)));
     }
 }

@@ -21,7 +21,7 @@ fn hidden_at(place: vec2<i32>) -> u32 {
     if any(place < vec2(0)) || place.x >= columns || place.y * columns + place.x >= i32(tile_count()) {
         return 0u;
     }
-    let hidden = atomicLoad(&state.hidden[u32(place.y * columns + place.x)]);
+    let hidden = atomicLoad(&state.tiles[u32(place.y * columns + place.x)].hidden);
     return select(hidden, NOTHING_HIDDEN, hidden == 0u);
 }
 

@@ -20,8 +20,10 @@ const LANES: u32 = 256u;
 const MOST_SEGMENTS: u32 = 31u;
 // Strands of a group: those whose pieces have two vertices.
 const MOST_STRANDS: u32 = LANES / 2u;
-// The nearest vertex is looked for among so many strands: it decides about speed alone.
+// The nearest vertex of a tile is looked for among so many strands, and in one of MOST_BETWEEN at least: it decides about speed alone. Hair before the vertex
+// that is found is all in the first slice; where a strand lies alone before the others, it takes the thin slices from them.
 const SAMPLES: u32 = 8192u;
+const MOST_BETWEEN: u32 = 16u;
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
 // Whether a segment is hidden is not looked for in more tiles than this.
@@ -166,7 +168,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     var point = NOWHERE;
     if exists {
         point = screen_point(strand, vertex);
-        if number % max(section.lod.strands / SAMPLES, 1u) == 0u && is_sound(point.xyz) {
+        if number % clamp(section.lod.strands / SAMPLES, 1u, MOST_BETWEEN) == 0u && is_sound(point.xyz) {
             note_nearest(point);
         }
     }

@@ -97,11 +97,18 @@ struct SharedTileInfo {
     slot: u32,
 }
 
+// What is kept of a tile from frame to frame.
+struct KeptTile {
+    // The complement of the bits of the nearness behind which its hair has hidden all; 0 where nothing is known of it.
+    hidden: atomic<u32>,
+    // Where the units of each quarter ended, see `cuts`. It decides about speed alone.
+    cuts: array<atomic<u32>, QUARTERS>,
+}
+
 // What is kept of a view from frame to frame, behind its counters.
 struct ViewState {
     counters: Counters,
-    // A tile: the complement of the bits of the nearness behind which its hair has hidden all; 0 where nothing is known of it.
-    hidden: array<atomic<u32>>,
+    tiles: array<KeptTile>,
 }
 
 // The complement of the bits of nearness 0.

@@ -15,7 +15,8 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<7, 23>([
+const LIBRARY: &[Module] = &with_shared::<8, 24>([
+    ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     ("front", include_str!("../../shaders/tiles/front.wgsl")),
     ("mean", include_str!("../../shaders/tiles/mean.wgsl")),

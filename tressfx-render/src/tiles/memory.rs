@@ -72,6 +72,9 @@ const AGAIN_BYTES: u64 = 2 * GRID_BYTES;
 /// Bytes of what is known of a tile.
 const INFO_BYTES: u64 = 24;
 
+/// Bytes of what is kept of a tile from frame to frame: what its hair has hidden, and where the units of each quarter ended.
+const KEPT_BYTES: u64 = 20;
+
 /// Vertices of all sections that may be seen.
 #[derive(Debug)]
 pub(crate) struct Vertices {
@@ -186,9 +189,9 @@ fn sizes(size: [u32; 2]) -> [u64; 3] {
     [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, QUEUE_HEADER + 4 * CLASSES * tiles]
 }
 
-/// Bytes of what is kept of a view from frame to frame: what its hair has hidden in each tile.
+/// Bytes of what is kept of a view from frame to frame.
 fn kept(size: [u32; 2]) -> u64 {
-    4 * u64::from(tile_count(size))
+    KEPT_BYTES * u64::from(tile_count(size))
 }
 
 /// Bytes of the largest buffer that a screen of this size takes.

@@ -1,0 +1,61 @@
+// Where the units of a quarter ended in the frame before. What hair moves by in a frame changes little of how many fragments the nearest references
+// leave, so that units that end behind as many again fit the list. One that does not is divided, as where nothing is known.
+
+import package::unit::{ENTRIES, FILL, Unit, nothing_more, unit_until};
+
+const CUTS: u32 = 3u;
+// A cut is the number of references before it. Of its logarithm so many bits are kept: it is known to half a percent; 0 is none.
+const CUT_BITS: u32 = 10u;
+const CODES_OF_AN_OCTAVE: f32 = 64.0;
+// A cut this much farther than where a unit begins is not its end, but where it begins.
+const NEAR_CUT: f32 = 1.02;
+
+// Of the frame before.
+var<workgroup> cuts: array<f32, CUTS>;
+// Of this frame, how many they are, and the fragments before the last one.
+var<workgroup> new_cuts: array<f32, CUTS>;
+var<workgroup> new_count: u32;
+var<workgroup> new_found: u32;
+
+// One lane comes here.
+fn recall_cuts(packed: u32) {
+    for (var i = 0u; i < CUTS; i++) {
+        let code = extractBits(packed, CUT_BITS * i, CUT_BITS);
+        cuts[i] = exp2(f32(code) / CODES_OF_AN_OCTAVE) - 1.0;
+        new_cuts[i] = 0.0;
+    }
+    new_count = 0u;
+    new_found = 0u;
+}
+
+// What is kept for the next frame.
+fn pack_cuts() -> u32 {
+    var packed = 0u;
+    for (var i = 0u; i < CUTS; i++) {
+        let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE);
+        packed |= min(u32(code), (1u << CUT_BITS) - 1u) << (CUT_BITS * i);
+    }
+    return packed;
+}
+
+// From a key in a slice to the next cut; nothing where there is none.
+fn unit_to_cut(first: u32, low: u32, from_reference: f32, rate: f32) -> Unit {
+    for (var i = 0u; i < CUTS; i++) {
+        if cuts[i] > NEAR_CUT * from_reference {
+            return unit_until(first, low, from_reference, cuts[i], rate);
+        }
+    }
+    return nothing_more(rate);
+}
+
+// A unit was blended: it is joined to the one before where both fit.
+fn note_cut(unit: Unit, found: u32) {
+    if new_count == 0u || f32(new_found + found) > FILL * f32(ENTRIES) {
+        new_count++;
+        new_found = 0u;
+    }
+    if new_count <= CUTS {
+        new_cuts[new_count - 1u] = unit.to_reference;
+    }
+    new_found += found;
+}
