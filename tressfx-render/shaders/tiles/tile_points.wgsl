@@ -23,7 +23,7 @@ const MOST_STRANDS: u32 = LANES / 2u;
 // The nearest vertex of a tile is looked for among so many strands, and in one of MOST_BETWEEN at least: it decides about speed alone. Hair before the vertex
 // that is found is all in the first slice; where a strand lies alone before the others, it takes the thin slices from them.
 const SAMPLES: u32 = 8192u;
-const MOST_BETWEEN: u32 = 16u;
+const MOST_BETWEEN: u32 = 8u;
 // A point that nothing is drawn from.
 const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
 // Whether a segment is hidden is not looked for in more tiles than this.
