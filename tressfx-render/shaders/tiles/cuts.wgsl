@@ -1,10 +1,10 @@
 // Where the units of a quarter ended in the frame before. What hair moves by in a frame changes little of how many fragments the nearest references
 // leave, so that units that end behind as many again fit the list. One that does not is divided, as where nothing is known.
 
-import package::unit::{ENTRIES, FILL, Unit, nothing_more, unit_until};
+import package::unit::{ENTRIES, FILL};
 
 const CUTS: u32 = 3u;
-// A cut is the number of references before it. Of its logarithm so many bits are kept: it is known to half a percent; 0 is none.
+// A cut is the number of references before it. Of its logarithm so many bits are kept: it is kept up to 1 % too large; 0 is none.
 const CUT_BITS: u32 = 10u;
 const CODES_OF_AN_OCTAVE: f32 = 64.0;
 // A cut this much farther than where a unit begins is not its end, but where it begins.
@@ -38,24 +38,24 @@ fn pack_cuts() -> u32 {
     return packed;
 }
 
-// From a key in a slice to the next cut; nothing where there is none.
-fn unit_to_cut(first: u32, low: u32, from_reference: f32, rate: f32) -> Unit {
+// The next cut behind so many references; 0 where there is none.
+fn next_cut(from_reference: f32) -> f32 {
     for (var i = 0u; i < CUTS; i++) {
         if cuts[i] > NEAR_CUT * from_reference {
-            return unit_until(first, low, from_reference, cuts[i], rate);
+            return cuts[i];
         }
     }
-    return nothing_more(rate);
+    return 0.0;
 }
 
-// A unit was blended: it is joined to the one before where both fit.
-fn note_cut(unit: Unit, found: u32) {
+// A unit that ends behind so many references was blended: it is joined to the one before where both fit.
+fn note_cut(to_reference: f32, found: u32) {
     if new_count == 0u || f32(new_found + found) > FILL * f32(ENTRIES) {
         new_count++;
         new_found = 0u;
     }
     if new_count <= CUTS {
-        new_cuts[new_count - 1u] = unit.to_reference;
+        new_cuts[new_count - 1u] = to_reference;
     }
     new_found += found;
 }

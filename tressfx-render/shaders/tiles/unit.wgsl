@@ -1,6 +1,6 @@
 // What a group blends at once: a range of depths, from somewhere in a slice to somewhere in the same or in a later one.
 
-import package::cuts::{note_cut, unit_to_cut};
+import package::cuts::{next_cut, note_cut};
 import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
@@ -80,10 +80,6 @@ fn last_end(first: u32, most: u32, to_reference: f32) -> u32 {
     return end;
 }
 
-fn nothing_more(rate: f32) -> Unit {
-    return Unit(SLICES, SLICES, 0u, 0u, 0.0, 0.0, rate, 0u);
-}
-
 // From a key in a slice on, to the end of the slice before another one.
 fn unit_to(first: u32, end: u32, low: u32, from_reference: f32, rate: f32) -> Unit {
     return Unit(first, end, low, max(first_key(end), low + 1u), from_reference, references_before(end), rate, 0u);
@@ -122,11 +118,11 @@ fn unit_of(first: u32, most: u32, low: u32, from_reference: f32, rate: f32) -> U
 // What to blend behind a key in a slice.
 fn unit_from(first: u32, low: u32, from_reference: f32, rate: f32) -> Unit {
     if first >= SLICES || low >= last_key {
-        return nothing_more(rate);
+        return Unit(SLICES, SLICES, 0u, 0u, 0.0, 0.0, rate, 0u);
     }
-    let expected = unit_to_cut(first, low, from_reference, rate);
-    if expected.first < SLICES {
-        return expected;
+    let cut = next_cut(from_reference);
+    if cut > 0.0 {
+        return unit_until(first, low, from_reference, cut, rate);
     }
     return unit_of(first, SLICES, low, from_reference, rate);
 }
@@ -152,7 +148,7 @@ fn next_unit(unit: Unit, found: u32, ends: vec2<u32>) -> Unit {
             return part_of(unit, found, ends, rate);
         }
     }
-    note_cut(unit, found);
+    note_cut(unit.to_reference, found);
     let first = select(unit.end - 1u, unit.end, unit.high >= first_key(unit.end));
     return unit_from(first, unit.high, unit.to_reference, rate);
 }
