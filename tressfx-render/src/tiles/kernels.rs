@@ -15,7 +15,7 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<8, 24>([
+const LIBRARY: &[Module] = &with_shared::<9, 25>([
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     ("front", include_str!("../../shaders/tiles/front.wgsl")),
@@ -23,6 +23,7 @@ const LIBRARY: &[Module] = &with_shared::<8, 24>([
     ("quarter", include_str!("../../shaders/tiles/quarter.wgsl")),
     ("segments", include_str!("../../shaders/tiles/segments.wgsl")),
     ("tiles", include_str!("../../shaders/tiles/tiles.wgsl")),
+    ("turns", include_str!("../../shaders/tiles/turns.wgsl")),
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),
 ]);
 
