@@ -60,7 +60,7 @@ pub(crate) fn shader(
 ) -> Result<Arc<Shader>> {
     // A fragment has one opacity, and a strand no copies, unless somebody asks for more.
     let mut specialization = specialization.clone();
-    for feature in ["places", "copies"] {
+    for feature in ["places", "copies", "few_turns"] {
         if specialization.features().iter().all(|(name, _)| *name != feature) {
             specialization = specialization.feature(feature, false);
         }

@@ -131,9 +131,6 @@ pub(crate) struct Tiles {
 /// References of a pixel with hair, in the mean of a view, from which on hair is dense.
 const DENSE: f64 = 30.0;
 
-/// Turns of its loops that a lane of `tile_blend` may take on a CPU: after 65,535 Mesa's driver ends them all. The last unit may take some more.
-const MOST_TURNS_ON_CPU: u32 = 60_000;
-
 /// Measurements in a row that need fewer rounds than there are, before there are as few.
 const FITTING: u32 = 30;
 
@@ -213,10 +210,6 @@ impl Tiles {
 
     fn few_tiles(&self) -> u32 {
         self.desc.few_tiles.unwrap_or(if self.is_cpu { 0 } else { TilesDesc::FEW_TILES })
-    }
-
-    fn most_turns(&self) -> u32 {
-        if self.is_cpu { MOST_TURNS_ON_CPU } else { u32::MAX }
     }
 
     fn skips_hidden(&self) -> bool {

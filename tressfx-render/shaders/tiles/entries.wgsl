@@ -19,8 +19,8 @@ var<workgroup> parts: array<vec2<u32>, ENTRIES>;
 // Depths in that order.
 @if(hair_output)
 var<workgroup> sorted_keys: array<u32, ENTRIES>;
-// How many fragments of one pixel have the same depth, at most; 0 where no two have.
-var<workgroup> most_same: atomic<u32>;
+// 0 where no two fragments of a pixel have the same depth; else 1, or with `few_turns` how many have it at most.
+var<workgroup> ties: atomic<u32>;
 // Entries of a pixel that have no place yet.
 var<workgroup> counts: array<atomic<u32>, PIXELS>;
 // Entries of the pixels before, and of all.
@@ -35,7 +35,7 @@ fn empty(lane: u32) {
     }
     if lane == 0u {
         atomicStore(&total, 0u);
-        atomicStore(&most_same, 0u);
+        atomicStore(&ties, 0u);
         atomicStore(&ends[0], 0xffffffffu);
         atomicStore(&ends[1], 0u);
     }
@@ -155,7 +155,8 @@ fn unpack_rank(packed: u32) -> Rank {
 fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
     let rank = rank_of(entry, place);
     if rank.same > 1u {
-        atomicMax(&most_same, rank.same);
+        @if(!few_turns) { atomicStore(&ties, 1u); }
+        @if(few_turns) { atomicMax(&ties, rank.same); }
     }
     @if(places) { parts[rank.own] = vec2(pack2x16unorm(fragment.parts.xy), pack2x16unorm(fragment.parts.zw)); }
     @if(hair_output) { sorted_keys[rank.own] = entry.key; }
@@ -260,6 +261,7 @@ fn places_of(pixel: u32) -> vec2<u32> {
 }
 
 // The entries of the pixel that has the most.
+@if(few_turns)
 fn most_of_a_pixel() -> u32 {
     var most = 0u;
     for (var pixel = 0u; pixel < PIXELS; pixel++) {

@@ -8,8 +8,8 @@
 
 import package::cuts::{pack_cuts, recall_cuts};
 import package::entries::{
-    Painted, add, color_at, empty, ends, entry_at, gather, most_same, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
-    total, with_one_more,
+    Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
+    ties, total, with_one_more,
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
@@ -24,11 +24,14 @@ import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
     WaitingTiles, begin_of, groups_of_a_tile, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
 };
-import package::turns::{may_go_on, note_chunk, note_unit, turns};
-import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds, last_key, next_unit, references_before, unit_from};
+import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
 @if(places)
 import package::entries::parts_at;
+@if(few_turns)
+import package::turns::{may_go_on, note_chunk, note_unit, turns};
+@if(few_turns)
+import package::unit::references_before;
 @if(hair_output)
 import package::entries::sorted_keys;
 @if(hair_output)
@@ -211,7 +214,7 @@ fn is_hit(unit: Unit, quarter: u32, place: u32, reference: u32) -> bool {
 fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
     var ends_found = vec2(LAST_KEY, 0u);
     let end = bounds[unit.end];
-    for (var chunk = bounds[max(unit.first, 1u) - 1u]; chunk < end && may_go_on(); chunk += LANES * LOOKS) {
+    for (var chunk = bounds[max(unit.first, 1u) - 1u]; chunk < end; chunk += LANES * LOOKS) {
         var own_hits = 0u;
         for (var i = 0u; i < LOOKS && chunk + i * LANES < end; i++) {
             let place = chunk + i * LANES + lane;
@@ -238,9 +241,14 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         workgroupBarrier();
         if lane == 0u {
             atomicStore(&hit_count, 0u);
-            note_chunk((count * sharing + LANES - 1u) / LANES);
+            @if(few_turns) { note_chunk((count * sharing + LANES - 1u) / LANES); }
         }
         workgroupBarrier();
+        @if(few_turns) {
+            if !may_go_on() {
+                break;
+            }
+        }
     }
     if atomicLoad(&total) > ENTRIES {
         atomicMin(&ends[0], ends_found.x);
@@ -266,7 +274,7 @@ fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
     }
     workgroupBarrier();
     put_colors(own);
-    if workgroupUniformLoad(&most_same) != 0u {
+    if workgroupUniformLoad(&ties) != 0u {
         settle_ties(own);
     }
 }
@@ -317,7 +325,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
         }
         seen_to = -1.0;
         recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
-        turns = 0u;
+        @if(few_turns) { turns = 0u; }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);
@@ -344,8 +352,10 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
             break;
         }
         collect(unit, own, corner, lane);
-        if !may_go_on() {
-            break;
+        @if(few_turns) {
+            if !may_go_on() {
+                break;
+            }
         }
         let found = atomicLoad(&total);
         let is_blended = unit.is_mean == 1u || found <= ENTRIES;
@@ -354,7 +364,7 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         paint_all(count, corner, lane);
         if lane == LANES - 1u {
             // While others blend. The ends are known where there are too many fragments.
-            note_unit(count > 0u);
+            @if(few_turns) { note_unit(count > 0u); }
             plan = next_unit(unit, found, vec2(atomicLoad(&ends[0]), atomicLoad(&ends[1])));
         }
         if lane < PIXELS && is_blended {
@@ -404,9 +414,10 @@ fn blend_parts(own: Job, lane: u32) {
     if is_done && lane == 0u {
         atomicAdd(&state.counters.pixels_with_hair, atomicLoad(&hairy_pixels));
         atomicAdd(&state.counters.fragments, atomicLoad(&blended_fragments));
-        if plan.first < SLICES {
-            // The driver would have ended its loops.
-            atomicAdd(&state.counters.dropped, u32(references_before(SLICES) - plan.from_reference) + 1u);
+        @if(few_turns) {
+            if plan.first < SLICES {
+                atomicAdd(&state.counters.dropped, u32(references_before(SLICES) - plan.from_reference) + 1u);
+            }
         }
         atomicMax(&state.tiles[own.tile].hidden, hidden_by());
         if (own.parts & 1u) == 1u {

@@ -50,9 +50,7 @@ struct TilesUniform {
     slots: u32,
     // Tiles that are few.
     few: u32,
-    // Turns of its loops that a lane of `tile_blend` may take.
-    most_turns: u32,
-    unused: u32,
+    unused: vec2<u32>,
     // The grids of `tile_bin` and `tile_alloc`.
     bin_groups: vec4<u32>,
     alloc_groups: vec4<u32>,

@@ -1,8 +1,7 @@
 // Turns of the loops of a lane. Mesa's CPU driver ends all loops of a thread without a word once they have gone round 65,535 times together: lanes
-// would then miss each other at barriers, and write where they must not. There a group ends before that, and what it has not blended is dropped.
+// would then miss each other at barriers, and write where they must not. There (`few_turns`) a group ends before that, and what it has not blended is dropped.
 
-import package::entries::{most_of_a_pixel, most_same};
-import package::tiles::tiles;
+import package::entries::{most_of_a_pixel, ties};
 
 // For each chunk of references, and for each segment that a lane draws: as many pixels as a quarter has.
 const TURNS_OF_A_CHUNK: u32 = 7u;
@@ -12,14 +11,14 @@ const TURNS_OF_AN_ENTRY: u32 = 4u;
 const TURNS_OF_A_TIE: u32 = 3u;
 // Beside those, for each unit: the slices that are looked through for its end, and the pixels.
 const TURNS_OF_A_UNIT: u32 = 64u;
-// Where no driver ends loops.
-const NO_LIMIT: u32 = 0xffffffffu;
+// The last unit may take some more.
+const MOST_TURNS: u32 = 60000u;
 
 // At most so many in the lane that has the most.
 var<workgroup> turns: u32;
 
 fn may_go_on() -> bool {
-    return turns < tiles.most_turns;
+    return turns < MOST_TURNS;
 }
 
 // One lane comes here, after each chunk of references of which each lane draws so many segments.
@@ -30,8 +29,8 @@ fn note_chunk(segments: u32) {
 // One lane comes here, after each unit.
 fn note_unit(is_sorted: bool) {
     turns += TURNS_OF_A_UNIT;
-    if is_sorted && tiles.most_turns != NO_LIMIT {
-        let same = atomicLoad(&most_same);
+    if is_sorted {
+        let same = atomicLoad(&ties);
         let most = most_of_a_pixel();
         turns += TURNS_OF_AN_ENTRY * most + TURNS_OF_A_TIE * select(0u, most + same, same > 0u);
     }

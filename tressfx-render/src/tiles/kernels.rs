@@ -95,9 +95,10 @@ pub(crate) fn alloc_grid(size: [u32; 2]) -> Grid {
 }
 
 impl Kernels {
-    /// Whether light passes the four places of a pixel for themselves is known to `blend` alone.
+    /// Whether light passes the four places of a pixel for themselves is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
     pub(crate) fn new(backend: &mut dyn Backend, output: Output, has_places: bool) -> Result<Self> {
-        let blended = output.specialization().feature("places", has_places);
+        let few_turns = backend.caps().is_cpu;
+        let blended = output.specialization().feature("places", has_places).feature("few_turns", few_turns);
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));

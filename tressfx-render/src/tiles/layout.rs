@@ -57,10 +57,8 @@ gpu_struct! {
         pub slots: u32,
         /// Tiles that are few: each of them is blended by more groups.
         pub few: u32,
-        /// Turns of its loops that a lane of `tile_blend` may take.
-        pub most_turns: u32,
         /// Nothing.
-        pub unused: u32,
+        pub unused: [u32; 2],
         /// Groups of `tile_bin`, and nothing.
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
@@ -126,8 +124,7 @@ pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_
         skips_hidden: skips_hidden.into(),
         slots: memory.screen.resolved.slots,
         few: tiles.few_tiles(),
-        most_turns: tiles.most_turns(),
-        unused: 0,
+        unused: [0; 2],
         bin_groups: padded(memory.bin_grid(draws)),
         alloc_groups: padded(alloc_grid(view.size())),
     };
