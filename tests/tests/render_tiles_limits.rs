@@ -41,7 +41,7 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
 fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
     let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
     let plain = TilesDesc::default();
-    let kinds = [plain, plain.places(4), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
+    let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
     for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
         let mut frames: Vec<(Vec<u8>, Counters)> = Vec::new();
         for few_tiles in [0, 20, u32::MAX] {

@@ -36,7 +36,7 @@ use crate::uniforms::SectionUniform;
 
 pub use crate::scattering::FibreTable;
 pub use composite_compute::composite_compute;
-pub use coverage::coverage;
+pub use coverage::{Stripe, coverage};
 pub use fill::{Fragment, fill};
 pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};
 pub use nearest::nearest;

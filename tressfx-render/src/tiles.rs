@@ -62,7 +62,7 @@ impl TilesDesc {
     pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
 
     /// What [`TilesDesc::places`] may be.
-    pub const PLACES: [u32; 2] = [1, 4];
+    pub const PLACES: [u32; 3] = [1, 4, 16];
 
     /// The same with another number of places in a pixel.
     #[must_use]
@@ -147,13 +147,13 @@ impl Tiles {
         let output = output.into();
         check(backend, size, output)?;
         if !TilesDesc::PLACES.contains(&desc.places) {
-            let message = format!("{} places in a pixel, there can be 1 or 4", desc.places);
+            let message = format!("{} places in a pixel, there can be 1, 4 or 16", desc.places);
             return Err(Error::rule("hair.render.tiles", message));
         }
         Ok(Self {
             desc: *desc,
             output,
-            kernels: Kernels::new(backend, output, desc.places == 4)?,
+            kernels: Kernels::new(backend, output, desc.places)?,
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
             usage: Usage::new(),

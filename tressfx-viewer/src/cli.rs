@@ -279,6 +279,9 @@ pub(crate) struct Shaders {
     /// Write the kernels of a renderer that writes depth and coverage of the hair too
     #[arg(long)]
     pub(crate) hair_output: bool,
+    /// Write the kernels for a device that is a CPU: some drivers end loops that run on, and their kernels end before
+    #[arg(long)]
+    pub(crate) for_cpu: bool,
 }
 
 impl Shaders {

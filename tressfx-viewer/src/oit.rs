@@ -26,7 +26,7 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
-    /// With `--oit tiles`: places in a pixel where light passes hair for itself, 1 or 4. With 4 the picture is nearer to the truth, and
+    /// With `--oit tiles`: places in a pixel where light passes hair for itself, 1, 4 or 16. With more the picture is nearer to the truth, and
     /// takes longer; 1 by default
     #[arg(long, value_name = "N")]
     places: Option<u32>,
@@ -140,7 +140,7 @@ impl Oit {
         let desc = TilesDesc::default();
         let places = self.places.unwrap_or(desc.places);
         if !TilesDesc::PLACES.contains(&places) {
-            bail!("--places {places}: it must be 1 or 4");
+            bail!("--places {places}: it must be 1, 4 or 16");
         }
         Ok(desc.places(places))
     }

@@ -127,7 +127,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let most = u64::MAX;
     let mut caps = Caps::webgpu_default();
     (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
-    caps.read_write_textures = true;
+    (caps.read_write_textures, caps.is_cpu) = (true, args.for_cpu);
     let mut backend = NullBackend::new(caps);
     let (volume, copies) = (params.volume.clone(), params.material(0).copies > 1);
     // What strands want at rest takes time and changes no kernel.

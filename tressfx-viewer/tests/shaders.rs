@@ -23,7 +23,7 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volu
 const COPIES: &str = "[material]\ncopies = 3\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 19] = [
+const VARIANTS: [&[&str]; 20] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml", "--fields"],
@@ -41,8 +41,9 @@ const VARIANTS: [&[&str]; 19] = [
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
     &["--oit", "shortcut", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles"],
-    &["--oit", "tiles", "--composite", "compute"],
+    &["--oit", "tiles", "--composite", "compute", "--for-cpu"],
     &["--oit", "tiles", "--places", "4", "--hair-output", "--params", "copies.toml"],
+    &["--oit", "tiles", "--places", "16", "--hair-output"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {
@@ -110,6 +111,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "clump",
         "contacts",
         "copies",
+        "few_turns",
         "fibre",
         "fields",
         "follows",

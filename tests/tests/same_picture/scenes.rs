@@ -119,7 +119,7 @@ impl Setting {
     }
 
     /// Every technique, so set.
-    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 9] {
+    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 10] {
         let &Self { k, tail, cap, layers, .. } = self;
         let mut lists = PpllDesc::default().k(k).tail(tail).cap(cap);
         lists.max_node_bytes = self.nodes.unwrap_or(lists.max_node_bytes);
@@ -137,6 +137,7 @@ impl Setting {
             ("in order, raster", mean.ordered(true).fill(Fill::Raster).into()),
             ("tiles", tiles.into()),
             ("tiles, four places", tiles.places(4).skips_hidden(true).into()),
+            ("tiles, 16 places", tiles.places(16).into()),
             ("auto", auto.dense(dense).tiles_on_cpu(true).into()),
         ]
     }

@@ -1,5 +1,8 @@
 // What a strand leaves in a pixel.
 
+@if(places)
+import package::places::Shares;
+
 struct Fragment {
     color: vec3<f32>,
     // See the lens: larger is nearer.
@@ -8,7 +11,7 @@ struct Fragment {
     alpha: u32,
     // Opacity at each place, see `places`.
     @if(places)
-    parts: vec4<f32>,
+    parts: Shares,
 }
 
 const OPAQUE: f32 = 65535.0;

@@ -7,7 +7,7 @@ import package::ribbon::{Ribbon, along, slant_of};
 import package::screen::{scene_nearness, view};
 
 @if(places)
-import package::places::{shares_of, with_mean};
+import package::places::{parts_with_mean, shares_of};
 
 // Colour and opacity at the ends of a segment.
 struct Paint {
@@ -121,8 +121,8 @@ fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, 
     let alpha = u32(round(saturate(covered * opacity) * OPAQUE));
     @if(!places) { return Fragment(color, nearness, alpha); }
     @if(places) {
-        let parts = with_mean(shares_of(at.y, half_width, line.normal), min(covered, 1.0)) * opacity;
-        return Fragment(color, nearness, alpha, saturate(parts));
+        let shares = shares_of(at.y, half_width, line.normal);
+        return Fragment(color, nearness, alpha, parts_with_mean(shares, min(covered, 1.0), opacity));
     }
 }
 

@@ -1,6 +1,8 @@
 // The fragments of a unit, in the memory of a group: found in any order, then put into that of pixels, and painted in that of depth.
 
 import package::fragment::{Fragment, pack_color};
+@if(places)
+import package::places::{PackedShares, Shares, is_less_packed, pack_parts, unpack_parts};
 import package::quarter::PIXELS;
 import package::tiles::VERTEX_MASK;
 import package::unit::{ENTRIES, ENTRIES_OF_A_LANE, LANES};
@@ -13,9 +15,9 @@ var<workgroup> total: atomic<u32>;
 // Depth and source, as they are found, then in the order of pixels. When all are painted, both words of their colours, in the order of pixels
 // and depth.
 var<workgroup> words: array<array<u32, ENTRIES>, 2>;
-// Opacities at the places of the pixel, 16 bits each, in the same order.
+// Opacities at the places of the pixel, in the same order.
 @if(places)
-var<workgroup> parts: array<vec2<u32>, ENTRIES>;
+var<workgroup> parts: array<PackedShares, ENTRIES>;
 // Depths in that order.
 @if(hair_output)
 var<workgroup> sorted_keys: array<u32, ENTRIES>;
@@ -158,7 +160,7 @@ fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
         @if(!few_turns) { atomicStore(&ties, 1u); }
         @if(few_turns) { atomicMax(&ties, rank.same); }
     }
-    @if(places) { parts[rank.own] = vec2(pack2x16unorm(fragment.parts.xy), pack2x16unorm(fragment.parts.zw)); }
+    @if(places) { parts[rank.own] = pack_parts(fragment.parts); }
     @if(hair_output) { sorted_keys[rank.own] = entry.key; }
     return Painted(pack_color(fragment), pack_rank(rank));
 }
@@ -203,7 +205,7 @@ fn is_less(a: vec2<u32>, b: vec2<u32>, if_same: bool) -> bool {
 fn is_before(a: u32, b: u32) -> bool {
     @if(places) {
         if all(color_at(a) == color_at(b)) {
-            return is_less(parts[a], parts[b], a < b);
+            return is_less_packed(parts[a], parts[b], a < b);
         }
     }
     return is_less(color_at(a), color_at(b), a < b);
@@ -223,7 +225,7 @@ fn place_by_color(painted: Painted) -> u32 {
 }
 
 @if(places)
-fn parts_of(painted: Painted) -> vec2<u32> {
+fn parts_of(painted: Painted) -> PackedShares {
     return parts[min(unpack_rank(painted.rank).own, ENTRIES - 1u)];
 }
 
@@ -249,7 +251,7 @@ fn settle_ties(own: OwnPainted) {
 }
 
 @if(places)
-fn put_parts(own: vec2<u32>, place: u32) {
+fn put_parts(own: PackedShares, place: u32) {
     if place < ENTRIES {
         parts[place] = own;
     }
@@ -275,8 +277,8 @@ fn color_at(place: u32) -> vec2<u32> {
     return vec2(words[0][place], words[1][place]);
 }
 
-// The opacities at a place.
+// The opacities at a place, whose mean is known.
 @if(places)
-fn parts_at(place: u32) -> vec4<f32> {
-    return vec4(unpack2x16unorm(parts[place].x), unpack2x16unorm(parts[place].y));
+fn parts_at(place: u32, mean: f32) -> Shares {
+    return unpack_parts(parts[place], mean);
 }

@@ -3,6 +3,8 @@
 import package::fragment::Fragment;
 import package::front::{Front, over};
 import package::quarter::PIXELS;
+@if(places)
+import package::places::all_places;
 import package::sums::{mean_color, optical_depth, transmittance_of, weighted};
 
 // The sums have room for so many fragments of a pixel of this brightness.
@@ -48,7 +50,7 @@ fn blend_mean(front: Front, pixel: u32) -> Front {
     let color = vec3(atomicLoad(&sums[pixel][3]), atomicLoad(&sums[pixel][4]), atomicLoad(&sums[pixel][5]));
     let alpha = 1.0 - transmittance_of(atomicLoad(&sums[pixel][1]));
     @if(!places) { return over(front, mean_color(color, weight, UNIT), alpha, atomicLoad(&sums[pixel][0])); }
-    @if(places) { return over(front, mean_color(color, weight, UNIT), vec4(alpha), atomicLoad(&sums[pixel][0])); }
+    @if(places) { return over(front, mean_color(color, weight, UNIT), all_places(alpha), atomicLoad(&sums[pixel][0])); }
 }
 
 // The largest alpha of the fragments of a pixel; 0 where there are none.

@@ -6,6 +6,7 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
+import package::constants::PLACES;
 import package::cuts::{pack_cuts, recall_cuts};
 import package::entries::{
     Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
@@ -53,8 +54,8 @@ import package::mean::largest_alpha;
 @group(0) @binding(10) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const NO_TILE: u32 = 0xffffffffu;
-// References that a lane looks at before the group draws those that touch its quarter.
-const LOOKS: u32 = 3u;
+// References that a lane looks at before the group draws those that touch its quarter; the opacities of 16 places leave less room for them.
+const LOOKS: u32 = select(3u, 2u, PLACES == 16u);
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
@@ -287,7 +288,7 @@ fn blend_sorted(front: Front, pixel: u32) -> Front {
         let color = color_at(i);
         let alpha = packed_alpha(color);
         @if(!places) { blended = over(blended, packed_color(color), f32(alpha) / OPAQUE, u32(alpha > 0u)); }
-        @if(places) { blended = over(blended, packed_color(color), parts_at(i), u32(alpha > 0u)); }
+        @if(places) { blended = over(blended, packed_color(color), parts_at(i, f32(alpha) / OPAQUE), u32(alpha > 0u)); }
         @if(hair_output) {
             // What comes later is farther: only the first one counts, and the first one that is not faint.
             if alpha > 0u && (seen == 0u || (seen < NOT_FAINT && alpha >= FAINT)) {

@@ -1,6 +1,6 @@
 //! How much of a pixel a strand covers.
 
-use glam::{DVec2, DVec4};
+use glam::DVec2;
 
 /// The half-widths of the base and of the flat top of a unit square, seen across a line with the unit normal `normal`.
 fn reach(normal: DVec2) -> [f64; 2] {
@@ -40,24 +40,48 @@ pub(super) fn between(before: f64, behind: f64, length: f64) -> f64 {
     (share(before) + share(behind) - 1.0).max(0.0)
 }
 
-/// Four places in a pixel, from its centre.
-const PLACES: [DVec2; 4] =
-    [DVec2::new(-0.125, -0.375), DVec2::new(0.375, -0.125), DVec2::new(0.125, 0.375), DVec2::new(-0.375, 0.125)];
+/// What a strand covers of a pixel: the part within `half_width` of a line with the unit normal `normal` that passes at `distance` from the
+/// centre, and its area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stripe {
+    /// In pixels, as all lengths here.
+    pub distance: f64,
+    /// Half of its width.
+    pub half_width: f64,
+    /// Of the line.
+    pub normal: DVec2,
+    /// The area; less than that of the stripe at the ends of strands.
+    pub covered: f64,
+}
 
-/// Shares of four places within `half_width` of a line as in [`coverage`], so that their mean is `covered`: all of them smaller by
-/// one factor than their intervals across the line, or what they leave free.
-pub(super) fn parts(distance: f64, half_width: f64, normal: DVec2, covered: f64) -> DVec4 {
-    let reach = 0.125 * normal.abs().element_sum();
-    let share = |place: DVec2| {
-        let across = distance + place.dot(normal);
-        let [low, high] = [(across - reach).max(-half_width), (across + reach).min(half_width)];
-        (high - low).max(0.0) / (2.0 * reach)
+/// Places in a pixel, from its centre, one in each row and in each column: 4, or 16 with one in each of 4 x 4 cells.
+fn places(count: u32) -> impl Iterator<Item = DVec2> {
+    const ORDER: [u32; 4] = [2, 0, 3, 1];
+    let row = move |column: u32| match count {
+        4 => ORDER[column as usize],
+        _ => 4 * ORDER[column as usize % 4] + ORDER[column as usize / 4],
     };
-    let shares = DVec4::from_array(PLACES.map(share));
-    let mean = shares.element_sum() / 4.0;
-    if covered > mean {
-        DVec4::ONE - (DVec4::ONE - shares) * ((1.0 - covered) / (1.0 - mean).max(1e-12))
-    } else {
-        shares * (covered / mean.max(1e-12))
+    let at = move |number: u32| (f64::from(number) + 0.5) / f64::from(count) - 0.5;
+    (0..count).map(move |column| DVec2::new(at(column), at(row(column))))
+}
+
+impl Stripe {
+    /// Shares of 4 or 16 places, so that their mean is the area: all of them smaller by one factor than their intervals across the line, or what they
+    /// leave free.
+    pub fn shares(&self, count: u32) -> Vec<f64> {
+        let Self { distance, half_width, normal, covered } = *self;
+        let reach = 0.5 / f64::from(count) * normal.abs().element_sum();
+        let share = |place: DVec2| {
+            let across = distance + place.dot(normal);
+            let [low, high] = [(across - reach).max(-half_width), (across + reach).min(half_width)];
+            (high - low).max(0.0) / (2.0 * reach)
+        };
+        let shares: Vec<f64> = places(count).map(share).collect();
+        let mean = shares.iter().sum::<f64>() / f64::from(count);
+        let adjusted = |share: f64| match covered > mean {
+            true => 1.0 - (1.0 - share) * ((1.0 - covered) / (1.0 - mean).max(1e-12)),
+            false => share * (covered / mean.max(1e-12)),
+        };
+        shares.into_iter().map(adjusted).collect()
     }
 }

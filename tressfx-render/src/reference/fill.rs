@@ -4,6 +4,7 @@ use glam::{DVec3, DVec4};
 use tressfx_core::view::View;
 
 use super::Strands;
+use super::coverage::Stripe;
 use super::projection::Projection;
 use super::ribbon::Ribbon;
 
@@ -20,8 +21,10 @@ pub struct Fragment {
     pub color: DVec3,
     /// Coverage times opacity.
     pub alpha: f64,
-    /// The same at four places of the pixel, whose mean it is.
-    pub parts: DVec4,
+    /// What it covers.
+    pub stripe: Stripe,
+    /// Of what it covers.
+    pub opacity: f64,
 }
 
 /// The fragments of a section. `colors` holds colour and opacity of each strand vertex, in the order of the positions;

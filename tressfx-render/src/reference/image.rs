@@ -17,15 +17,16 @@ pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([
     resolved(view, lights, strands, scene, usize::MAX)
 }
 
-/// The same where light passes four places of a pixel for themselves.
+/// The same where light passes so many places of a pixel for themselves, 4 or 16.
 pub fn exact_at_places(
     view: &View,
     lights: &Lights,
     strands: &[Strands],
     scene: &dyn Fn([u32; 2]) -> f32,
+    places: u32,
 ) -> Vec<DVec4> {
     let mut lists = lists(view, lights, strands, scene, 1);
-    lists.iter_mut().map(|list| resolve_at_places(list)).collect()
+    lists.iter_mut().map(|list| resolve_at_places(list, places)).collect()
 }
 
 /// The picture with the `k` nearest fragments of a pixel in order.

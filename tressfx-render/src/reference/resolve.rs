@@ -30,13 +30,18 @@ pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, tail: Tail, unlit
     color.extend(1.0 - transmittance)
 }
 
-/// The same with all fragments in order, where light passes four places of the pixel for themselves.
-pub fn resolve_at_places(fragments: &mut [Fragment]) -> DVec4 {
+/// The same with all fragments in order, where light passes so many places of the pixel for themselves, 4 or 16.
+pub fn resolve_at_places(fragments: &mut [Fragment], places: u32) -> DVec4 {
     fragments.sort_by(|a, b| b.nearness.total_cmp(&a.nearness));
-    let (mut color, mut transmittance) = (DVec3::ZERO, DVec4::ONE);
+    let mut color = DVec3::ZERO;
+    let mut transmittance = vec![1.0; places as usize];
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / f64::from(places);
     for fragment in fragments {
-        color += (transmittance * fragment.parts).element_sum() / 4.0 * fragment.color;
-        transmittance *= DVec4::ONE - fragment.parts;
+        let before = mean(&transmittance);
+        for (left, share) in transmittance.iter_mut().zip(fragment.stripe.shares(places)) {
+            *left *= 1.0 - (share * fragment.opacity).clamp(0.0, 1.0);
+        }
+        color += (before - mean(&transmittance)) * fragment.color;
     }
-    color.extend(1.0 - transmittance.element_sum() / 4.0)
+    color.extend(1.0 - mean(&transmittance))
 }

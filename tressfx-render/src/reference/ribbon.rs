@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::coverage::{between, coverage, parts, pixel_length, rise};
+use super::coverage::{Stripe, between, coverage, pixel_length, rise};
 use super::joint::Joint;
 use super::projection::{Point, Projection};
 use super::{Fragment, Strands};
@@ -142,7 +142,8 @@ impl Ribbon {
             nearness: mix(a.nearness, b.nearness),
             color,
             alpha: (covered * opacity).clamp(0.0, 1.0),
-            parts: (parts(at.y, half_width, self.normal, covered.min(1.0)) * opacity).clamp(DVec4::ZERO, DVec4::ONE),
+            stripe: Stripe { distance: at.y, half_width, normal: self.normal, covered: covered.min(1.0) },
+            opacity,
         })
     }
 }

@@ -95,10 +95,14 @@ pub(crate) fn alloc_grid(size: [u32; 2]) -> Grid {
 }
 
 impl Kernels {
-    /// Whether light passes the four places of a pixel for themselves is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
-    pub(crate) fn new(backend: &mut dyn Backend, output: Output, has_places: bool) -> Result<Self> {
+    /// At how many places of a pixel light passes for itself is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
+    pub(crate) fn new(backend: &mut dyn Backend, output: Output, places: u32) -> Result<Self> {
         let few_turns = backend.caps().is_cpu;
-        let blended = output.specialization().feature("places", has_places).feature("few_turns", few_turns);
+        let blended = output
+            .specialization()
+            .feature("places", places > 1)
+            .feature("few_turns", few_turns)
+            .constant("PLACES", places);
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));
