@@ -28,9 +28,9 @@ impl Extent {
 
     pub(crate) fn setting(self) -> Setting {
         match self {
-            Self::Quick => Setting { size: [320, 180], samples: 64, frames: 1 },
-            Self::Full => Setting { size: [1280, 720], samples: 256, frames: 60 },
-            Self::Light => Setting { size: [320, 180], samples: 256, frames: 30 },
+            Self::Quick => Setting { size: [320, 180], samples: 256, frames: 1, bits: 16 },
+            Self::Full => Setting { size: [1280, 720], samples: 1024, frames: 60, bits: 16 },
+            Self::Light => Setting { size: [320, 180], samples: 256, frames: 30, bits: 16 },
         }
     }
 }
@@ -44,6 +44,14 @@ pub(crate) struct Setting {
     pub(crate) samples: u32,
     /// Frames that are simulated and drawn; the last one is compared.
     pub(crate) frames: u32,
+    /// Bits of a channel of the pictures that are compared.
+    #[serde(default = "eight")]
+    pub(crate) bits: u32,
+}
+
+/// What was compared before more were.
+fn eight() -> u32 {
+    8
 }
 
 /// GPU time of the passes of one label in a frame: the median over the runs of a pass, times its runs in a frame.

@@ -12,7 +12,7 @@ pub(crate) struct Family {
 }
 
 /// All families, in the order of the tables.
-pub(crate) const FAMILIES: [Family; 6] = [
+pub(crate) const FAMILIES: [Family; 7] = [
     Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
     Family {
         name: "ppll-raster",
@@ -29,6 +29,7 @@ pub(crate) const FAMILIES: [Family; 6] = [
     },
     Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
     Family { name: "tiles-four-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
+    Family { name: "tiles-16-places", words: &["--oit", "tiles", "--places", "16"], ks: &[], quick_ks: &[] },
 ];
 
 /// A family with a setting.
@@ -96,7 +97,7 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 26);
+        assert_eq!(methods(Extent::Full).len(), 27);
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
         assert_eq!(family_of("tiles"), Some((4, "")));
     }

@@ -71,9 +71,9 @@ fn page(run: &Run, extent: Extent) -> String {
          Each picture is compared with that of the reference renderer (`tressfx render --reference --reference-light given`), \
          which traces fibres as solids with {} rays a pixel, in the colours that the methods draw with, at {width}x{height}; \
          frames simulated: {}. FLIP, PSNR and the largest difference (of 255) are of \
-         the whole picture, with its backdrop. A part of each error is the sampling of the reference, the same for all methods of \
+         the whole picture, with its backdrop, of {} bits a channel. A part of each error is the sampling of the reference, the same for all methods of \
          a scene. Milliseconds are those of shading and of the technique; shadows are in [light.md](light.md).\n\n",
-        run.setting.samples, run.setting.frames
+        run.setting.samples, run.setting.frames, run.setting.bits
     );
     page.push_str(&devices(run));
     if let Some(note) = &run.note {

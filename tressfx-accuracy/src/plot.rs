@@ -22,6 +22,7 @@ const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(230, 159, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
+    RGBColor(0, 0, 0),
 ];
 
 /// Of the line along the best ones.
