@@ -46,7 +46,7 @@ pub struct TilesDesc {
     /// is drawn again with all of them, so that the picture is the same. None: where hair is dense, in more than [`TilesDesc::few_tiles`].
     pub skips_hidden: Option<bool>,
     /// Places in a pixel where light passes hair for itself, one of [`TilesDesc::PLACES`]. With one, what a strand covers of a pixel
-    /// hides that share of all that is behind it. With four, strands that run behind each other are seen beside each other.
+    /// hides that share of all that is behind it. With 4, or 16, strands that run behind each other are seen beside each other.
     pub places: u32,
     /// Tiles with hair up to which the pixels of each are divided among 16 groups, not among four: where hair covers little of the
     /// picture, more of the device has work. The picture is the same. Best is about as many as the device can blend at once, each by four
