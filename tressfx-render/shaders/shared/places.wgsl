@@ -15,11 +15,11 @@ alias PackedShares = array<u32, WORDS>;
 
 // Where four places are from the centre of the pixel. No two places share a row or a column: each stands for a part of the pixel across a
 // line along either. Of 16, one is in each of 4 x 4 cells too.
-fn columns_of(four: u32) -> vec4<f32> {
+fn place_columns(four: u32) -> vec4<f32> {
     return (vec4(0.5, 1.5, 2.5, 3.5) + f32(4u * four)) / f32(PLACES) - 0.5;
 }
 
-fn rows_of_places(four: u32) -> vec4<f32> {
+fn place_rows(four: u32) -> vec4<f32> {
     // In cells the order of rows is that of the fours: 2, 0, 3, 1.
     let within = select(0u, 2u - 2u * (four % 2u) + four / 2u, FOURS > 1u);
     return (vec4(2.0, 0.0, 3.0, 1.0) * f32(FOURS) + f32(within) + 0.5) / f32(PLACES) - 0.5;
@@ -31,7 +31,7 @@ fn shares_of(distance: f32, half_width: f32, normal: vec2<f32>) -> Shares {
     let most = min(half_width / reach, 1.0);
     var shares: Shares;
     for (var i = 0u; i < FOURS; i++) {
-        let across = distance + (columns_of(i) * normal.x + rows_of_places(i) * normal.y);
+        let across = distance + (place_columns(i) * normal.x + place_rows(i) * normal.y);
         shares[i] = clamp((half_width + reach - abs(across)) * (0.5 / reach), vec4(0.0), vec4(most));
     }
     return shares;
