@@ -10,7 +10,7 @@ use tressfx_core::backend::{DepthOrder, Format, Run};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{Pose, View, ViewError, Viewport};
-use tressfx_render::{DrawError, HairRenderer, Light, Lights, Material, RenderDesc, SectionDraw, ViewDraw};
+use tressfx_render::{DrawError, HairRenderer, Light, Lights, Material, RenderDesc, SectionDraw, TilesDesc, ViewDraw};
 
 use support::{gpu, screen};
 
@@ -167,7 +167,7 @@ fn what_cannot_be_drawn_is_refused() {
         renderer.draw(&mut PassList::new(), &views, &[]).unwrap_err()
     };
     let none = Lights::default();
-    assert_eq!(refused(&vec![(view, none.clone()); 9]), DrawError::Views(9));
+    assert_eq!(refused(&vec![(view, none.clone()); 9]), DrawError::Views { given: 9, most: 8 });
     let many = Lights { lights: vec![Light::directional(Vec3::Y, Vec3::ONE); 17], ..Lights::default() };
     assert_eq!(refused(&[(view, many)]), DrawError::Lights(17));
     let large = View::new(view.view_matrix(), view.projection_matrix(), REVERSE, [96, 65]).unwrap();
@@ -175,6 +175,29 @@ fn what_cannot_be_drawn_is_refused() {
     let leaves = Viewport::part([50, 0], [47, 64], SIZE).unwrap_err();
     assert_eq!(leaves, ViewError::Viewport { offset: [50, 0], size: [47, 64], target: SIZE });
     assert!(Viewport::part([u32::MAX, 0], [2, 2], SIZE).is_err());
+}
+
+#[test]
+fn fewer_views_take_less_memory() {
+    let mut backend = NullBackend::default();
+    let mut made = |views| {
+        let desc = RenderDesc::new(SIZE, Format::Rgba16F).technique(TilesDesc::default()).views(views);
+        HairRenderer::new(&mut backend, &desc)
+    };
+    for none in [0, 9] {
+        let error = made(none).unwrap_err().to_string();
+        assert!(error.contains(&format!("{none} views")) && error.contains("1 to 8"), "{error}");
+    }
+    let [one, all] = [1, 8].map(|views| made(views).unwrap().technique_bytes());
+    // Counters, and what is kept of each tile.
+    assert_eq!(all - one, 7 * (32 + 20 * 12 * 8));
+    let mut renderer = made(2).unwrap();
+    let Some(screen) = screen(|_| ()) else { return };
+    let (targets, none) = (screen.targets(), Lights::default());
+    let three = vec![ViewDraw::new(&screen.view, &none, targets); 3];
+    let error = renderer.draw(&mut PassList::new(), &three, &[]).unwrap_err();
+    assert_eq!(error, DrawError::Views { given: 3, most: 2 });
+    assert!(renderer.draw(&mut PassList::new(), &three[..2], &[]).is_ok());
 }
 
 #[test]

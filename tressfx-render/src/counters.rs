@@ -7,7 +7,6 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
 use crate::resolved::storage;
-use crate::views::MAX_VIEWS;
 
 gpu_struct! {
     /// What was drawn of a view.
@@ -54,36 +53,39 @@ impl Counters {
 
 /// [`Counters`] of each view of a frame, and what is kept of it for the next frame.
 #[derive(Debug)]
-pub(crate) struct ViewCounters([BufferId; MAX_VIEWS]);
+pub(crate) struct ViewCounters {
+    buffers: Vec<BufferId>,
+    /// Bytes that are kept of each view.
+    kept: u64,
+}
 
 impl ViewCounters {
-    /// Size of all of them on the GPU, with so many bytes more in each.
-    pub(crate) const fn bytes(kept: u64) -> u64 {
-        MAX_VIEWS as u64 * (Counters::BYTES + kept)
+    pub(crate) fn new(backend: &mut dyn Backend, views: usize, kept: u64) -> Result<Self> {
+        let mut of_a_view = |_| storage(backend, "hair.render.counters", Counters::BYTES + kept);
+        Ok(Self { buffers: (0..views).map(&mut of_a_view).collect::<Result<_>>()?, kept })
     }
 
-    pub(crate) fn new(backend: &mut dyn Backend, kept: u64) -> Result<Self> {
-        let made: Result<Vec<_>> =
-            (0..MAX_VIEWS).map(|_| storage(backend, "hair.render.counters", Counters::BYTES + kept)).collect();
-        Ok(Self(made?.try_into().expect("as many as there are views")))
+    /// Size of all of them on the GPU.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.buffers.len() as u64 * (Counters::BYTES + self.kept)
     }
 
     /// Those of a view.
     pub(crate) fn of(&self, view: usize) -> BufferId {
-        self.0[view]
+        self.buffers[view]
     }
 
     /// Sets those of the first views to zero.
     pub(crate) fn clear(&self, list: &mut PassList, views: usize) {
-        self.0[..views].iter().for_each(|&counters| list.clear(counters, 0, Counters::BYTES));
+        self.buffers[..views].iter().for_each(|&counters| list.clear(counters, 0, Counters::BYTES));
     }
 
-    /// Forgets what was kept: so many bytes of each.
-    pub(crate) fn forget(&self, list: &mut PassList, kept: u64) {
-        self.0.iter().for_each(|&counters| list.clear(counters, Counters::BYTES, kept));
+    /// Forgets what was kept.
+    pub(crate) fn forget(&self, list: &mut PassList) {
+        self.buffers.iter().for_each(|&counters| list.clear(counters, Counters::BYTES, self.kept));
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {
-        self.0.into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        self.buffers.into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }

@@ -9,15 +9,19 @@ use crate::copies::MAX_COPIES;
 use crate::lights::{Cone, LightPlace, Lights, MAX_LIGHTS};
 use crate::lod::Lod;
 use crate::strands::SectionDraw;
-use crate::views::MAX_VIEWS;
 
 /// Why hair is not drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
     /// More views than a frame can have.
-    #[error("hair.render: {0} views, a frame can have {MAX_VIEWS}")]
-    Views(usize),
+    #[error("hair.render: {given} views, a frame can have {most}")]
+    Views {
+        /// How many there are.
+        given: usize,
+        /// [`RenderDesc::views`](crate::RenderDesc::views).
+        most: usize,
+    },
     /// More lights than a view can have.
     #[error("hair.render: {0} lights, a view can have {MAX_LIGHTS}")]
     Lights(usize),

@@ -4,6 +4,7 @@ use tressfx_core::backend::Format;
 use tressfx_core::shader::Specialization;
 
 use crate::resolved::TILE;
+use crate::views::MAX_VIEWS;
 
 /// Format of the depth and coverage of hair, where a renderer writes them: see [`Targets::hair`](crate::Targets::hair).
 pub const HAIR_FORMAT: Format = Format::Rg32F;
@@ -19,6 +20,8 @@ pub(crate) struct Output {
     pub(crate) copies: bool,
     /// Whether compute passes may write the picture.
     pub(crate) storage: bool,
+    /// The most views of a frame.
+    pub(crate) views: usize,
 }
 
 impl Output {
@@ -49,8 +52,8 @@ pub(crate) fn walk(copies: bool) -> Specialization {
 }
 
 impl From<Format> for Output {
-    /// The picture alone.
+    /// The picture alone, and as many views as there can be.
     fn from(color: Format) -> Self {
-        Self { color, hair: false, copies: false, storage: false }
+        Self { color, hair: false, copies: false, storage: false, views: MAX_VIEWS }
     }
 }

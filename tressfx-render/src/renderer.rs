@@ -55,6 +55,8 @@ pub struct RenderDesc {
     pub copies: bool,
     /// How shadows are made; none lights every strand as if it were alone.
     pub shadows: Option<ShadowDesc>,
+    /// The most views of a frame, 1 to [`MAX_VIEWS`].
+    pub views: usize,
 }
 
 impl RenderDesc {
@@ -72,6 +74,7 @@ impl RenderDesc {
             own_colors: false,
             copies: false,
             shadows,
+            views: MAX_VIEWS,
         }
     }
 
@@ -79,6 +82,12 @@ impl RenderDesc {
     #[must_use]
     pub fn shadows(self, shadows: impl Into<Option<ShadowDesc>>) -> Self {
         Self { shadows: shadows.into(), ..self }
+    }
+
+    /// The same with at most so many views in a frame: tiles keep 20 bytes for each 8 x 8 pixels of each of them.
+    #[must_use]
+    pub fn views(self, views: usize) -> Self {
+        Self { views, ..self }
     }
 
     /// The same with another technique.
@@ -121,7 +130,8 @@ impl RenderDesc {
     }
 
     fn output(&self) -> Output {
-        Output { color: self.target, hair: self.hair_output, copies: self.copies, storage: self.storage_target }
+        let Self { target: color, hair_output: hair, copies, storage_target: storage, views, .. } = *self;
+        Output { color, hair, copies, storage, views }
     }
 }
 
@@ -194,8 +204,12 @@ impl HairRenderer {
     /// Compiles the kernels and makes the buffers whose size depends on that of the view.
     ///
     /// # Errors
-    /// A `k` that the technique does not take, a setting of shadows out of its range, a format that no compute pass writes where one is to, what the device lacks, or what the backend says.
+    /// A `k` that the technique does not take, a number of views that no frame has, a setting of shadows out of its range, a format that no compute pass writes where one is to, what the device lacks, or what the backend says.
     pub fn new(backend: &mut dyn Backend, desc: &RenderDesc) -> Result<Self> {
+        if !(1..=MAX_VIEWS).contains(&desc.views) {
+            let message = format!("{} views in a frame, there can be 1 to {MAX_VIEWS}", desc.views);
+            return Err(Error::rule("hair.render", message));
+        }
         let ((order, velocity, views, shadows, shade), owner) = Owner::build(backend, |backend| {
             let order = desc.technique.make(backend, desc.size, desc.output())?;
             let velocity = desc.velocity_output.then(|| Velocity::new(backend, desc.size, desc.copies)).transpose()?;
@@ -395,8 +409,8 @@ impl HairRenderer {
     }
 
     fn check(&self, views: &[ViewDraw], draws: &[SectionDraw]) -> std::result::Result<(), DrawError> {
-        if views.len() > MAX_VIEWS {
-            return Err(DrawError::Views(views.len()));
+        if views.len() > self.desc.views {
+            return Err(DrawError::Views { given: views.len(), most: self.desc.views });
         }
         for draw in views {
             check_lights(draw.lights)?;

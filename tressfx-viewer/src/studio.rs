@@ -113,7 +113,7 @@ impl Studio {
             let section = section.with_own_look(backend, &mut uploads, &look)?;
             sections.push((section, material(args, *run.params.material(index))));
         }
-        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?);
+        let desc = RenderDesc::new(args.size, TARGET).technique(args.oit.technique()?).views(1);
         let desc = desc.storage_target(storage_target).hair_output(hair_output);
         // Where nothing opaque is drawn, nothing that is not seen keeps light away.
         let shadows = args.shadows.desc().map(|shadows| shadows.skin(!opaque.is_empty()));

@@ -12,6 +12,7 @@ use crate::counters::ViewCounters;
 use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
 use crate::usage::is_surplus;
+use crate::views::MAX_VIEWS;
 
 /// A pool is made smaller that is more than so many times as large as what was needed.
 const SURPLUS: f64 = 1.6;
@@ -84,7 +85,7 @@ impl NodePool {
         let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
         let heads = storage(backend, "hair.render.heads", HEAD_BYTES * pixels)?;
-        let counters = ViewCounters::new(backend, 0)?;
+        let counters = ViewCounters::new(backend, MAX_VIEWS, 0)?;
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
@@ -151,7 +152,7 @@ impl NodePool {
     /// What it takes for `size` pixels.
     pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
         let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
-        (HEAD_BYTES * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + ViewCounters::bytes(0)
+        (HEAD_BYTES * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + self.counters.bytes()
     }
 
     pub(crate) fn destroy(self, backend: &mut dyn Backend) {

@@ -42,14 +42,15 @@ impl Memory {
         let [layers, opticals, fronts] = bytes_of_pixel(desc).map(|bytes| bytes * pixels(size));
         let name = if desc.ordered { "hair.render.slots" } else { "hair.render.sums" };
         let resolved = Resolved::new(backend, size, output)?;
+        let counters = ViewCounters::new(backend, output.views, 0)?;
         Ok(Self {
             layers: storage(backend, "hair.render.layers", layers)?,
             opticals: storage(backend, "hair.render.opticals", opticals)?,
             fronts: storage(backend, name, fronts)?,
-            counters: ViewCounters::new(backend, 0)?,
             bytes: [layers, opticals, fronts].map(|bytes| bytes.max(16)).iter().sum::<u64>()
                 + resolved.bytes(size)
-                + ViewCounters::bytes(0),
+                + counters.bytes(),
+            counters,
             resolved,
         })
     }

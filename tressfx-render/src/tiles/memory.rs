@@ -233,7 +233,7 @@ impl Memory {
             screen: Screen::new(backend, size, LEAST_SLOTS, output)?,
             grids: backend.create_buffer(&BufferDesc::indirect("hair.render.tile_grids", GRIDS_BYTES))?,
             grids_again: backend.create_buffer(&BufferDesc::indirect("hair.render.grids_again", AGAIN_BYTES))?,
-            counters: ViewCounters::new(backend, kept(size))?,
+            counters: ViewCounters::new(backend, output.views, kept(size))?,
             is_new: true,
             uniforms: UniformArray::new(backend, "hair.render.tile_uniforms", MAX_VIEWS * UNIFORMS_OF_A_VIEW)?,
         })
@@ -245,8 +245,9 @@ impl Memory {
     }
 
     pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
-        let screen = Screen::new(backend, size, LEAST_SLOTS, self.screen.resolved.output)?;
-        let counters = ViewCounters::new(backend, kept(size))?;
+        let output = self.screen.resolved.output;
+        let screen = Screen::new(backend, size, LEAST_SLOTS, output)?;
+        let counters = ViewCounters::new(backend, output.views, kept(size))?;
         std::mem::replace(&mut self.screen, screen).destroy(backend);
         std::mem::replace(&mut self.counters, counters).destroy(backend);
         self.is_new = true;
@@ -336,7 +337,7 @@ impl Memory {
     pub(crate) fn bytes(&self) -> u64 {
         let tiles = sizes(self.screen.size).map(|bytes| bytes.max(16)).iter().sum::<u64>();
         let references = (References::BYTES * u64::from(self.references.count)).max(16);
-        let views = ViewCounters::bytes(kept(self.screen.size)) + self.uniforms.bytes();
+        let views = self.counters.bytes() + self.uniforms.bytes();
         tiles
             + self.vertices.bytes()
             + references
@@ -384,7 +385,7 @@ impl Memory {
     /// Begins a frame with so many views.
     pub(crate) fn begin(&mut self, list: &mut PassList, views: usize) {
         if std::mem::take(&mut self.is_new) {
-            self.counters.forget(list, kept(self.screen.size));
+            self.counters.forget(list);
         }
         self.counters.clear(list, views);
     }
