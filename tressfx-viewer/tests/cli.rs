@@ -236,8 +236,8 @@ fn each_technique_draws_the_hair_and_says_what_it_takes() {
         let [width, height] = [160, 90u64];
         // Eight bytes a pixel are those of whole tiles.
         let tiles = (8 * 64 + 8) * width.div_ceil(8) * height.div_ceil(8);
-        // Of eight views; and the arguments of the draw over the tiles.
-        let counters = 8 * 32 + 16;
+        // Of one view; and the arguments of the draw over the tiles.
+        let counters = 32 + 16;
         assert_eq!(render["oit_bytes"].as_u64(), Some((bytes - 8) * width * height + tiles + counters), "{words:?}");
         let flip = flip_to_lists(&folder, "shortcut.png");
         assert!(flip < 0.03, "{words:?}: FLIP {flip} to the lists");
