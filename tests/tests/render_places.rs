@@ -27,8 +27,8 @@ fn loose_dense_and_faint_hair_is_as_in_exact_order() {
         ("faint", Groom::wavy(6000, 16, 4, faint()), [48, 32]),
     ];
     // Opacities of 16 places have 8 bits.
-    let allowed = [(4, 0.002, 85.0), (16, 0.002, 82.0)];
-    for ((name, groom, size), (places, most, least)) in grooms.iter().flat_map(|of| allowed.map(|to| (of, to))) {
+    let allowed = [(4, 85.0), (16, 82.0)];
+    for ((name, groom, size), (places, least)) in grooms.iter().flat_map(|of| allowed.map(|to| (of, to))) {
         let Some(mut screen) = screen(|setup| {
             at_places(places)(setup);
             setup.size = *size;
@@ -40,7 +40,7 @@ fn loose_dense_and_faint_hair_is_as_in_exact_order() {
         let difference = picture.difference(&exact);
         let to_one = Difference::between(&screen.exact(&[groom]), &exact);
         eprintln!("{name}, {places}: {difference:?}; one place in f64: {to_one:?}");
-        assert!(difference.max < most && difference.psnr > least, "{name}, {places}: {difference:?}");
+        assert!(difference.max < 0.002 && difference.psnr > least, "{name}, {places}: {difference:?}");
         assert!(*name == "faint" || to_one.psnr < 50.0, "{name}: it is another picture, {to_one:?}");
         assert!(screen.hair(&[groom]).bytes == picture.bytes, "{name}: the same bits again");
     }
@@ -90,14 +90,15 @@ fn behind_each_other(screen: &mut Screen, places: u32, share: f64) {
 fn a_strand_alone_is_as_with_one_place() {
     let Some(mut one) = screen(|setup| setup.technique = TilesDesc::default().closed_below(0.0).into()) else { return };
     let pixels_per_unit = one.view.lens().focal.x / 3.0;
-    for (width, number) in [0.05, 0.7, 3.0].into_iter().flat_map(|width| [(width, 4), (width, 16)]) {
+    for (width, number, most) in [0.05, 0.7, 3.0].into_iter().flat_map(|width| [(width, 4, 0.001), (width, 16, 0.002)])
+    {
         let Some(mut places) = screen(at_places(number)) else { return };
         let strand = (0..7).map(|i| Vec3::new(0.1 * i as f32 - 0.3, 0.043 * i as f32 - 0.1, 0.0)).collect();
         let groom = Groom::new(&[strand], opaque(pixels_per_unit, width));
         let pictures: [Picture; 2] = [&mut one, &mut places].map(|screen| screen.hair(&[&groom]));
         let difference = pictures[0].difference(&pictures[1].pixels());
         eprintln!("{width} pixels wide, {number} places: {difference:?}");
-        assert!(area(&pictures[0].pixels()) > 20.0 * f64::from(width) && difference.max < 0.002, "{difference:?}");
+        assert!(area(&pictures[0].pixels()) > 20.0 * f64::from(width) && difference.max < most, "{difference:?}");
     }
 }
 

@@ -93,7 +93,7 @@ pub(crate) fn page(changes: &[Change]) -> String {
     });
     format!(
         "\n## From frame to frame\n\n\
-         Shadows that flicker or swim change a picture more than what moves in it. {frames} frames of `{groom}` at {size}: mean FLIP from a frame to \
+         Shadows that flicker or swim change a picture more than what moves in it. {frames} frames of `{groom}` at {size}, of 8 bits a channel: mean FLIP from a frame to \
          the next, of the method `shadows-192` and of the reference renderer with {} samples a pixel. With {} samples it has twice the noise: what that adds \
          is more than what noise there is in the figure before. The last column is the change of one step over that of the reference renderer, at most.\n\n\
          | film | shadows-192 | reference | with a quarter of the samples | shadows-192 beside the reference | largest |\n|---|---|---|---|---|---|\n{}",

@@ -99,6 +99,10 @@ fn main() -> Result<()> {
         plot(&run, extent, &args.docs)?;
         return page::write(&run, extent, &args.docs);
     }
+    if let Some(stored) = stored.as_ref().filter(|_| args.check || !args.scenes.is_empty()) {
+        // Said before all is measured.
+        check::check_setting(stored, extent.setting())?;
+    }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
     let scenes = scene::named(scene::scenes(extent), &args.scenes)?;
     let rows = measure.all(&scenes, &method::methods(extent), args.device.backends())?;

@@ -113,14 +113,15 @@ impl Measure {
         reference: &Path,
     ) -> Result<Row> {
         let kept = picture.with_extension("json");
-        let words = [words, &method.words, &["--backend".to_owned(), backend.to_owned()]].concat();
+        let deep = picture.with_extension("16.png");
+        let on = ["--backend".to_owned(), backend.to_owned()];
+        let words = [words, &method.words, &on, &deep_to(&deep)].concat();
         let program = &self.program.stamp;
         let earlier = fs::read_to_string(&kept).ok().and_then(|text| serde_json::from_str::<Kept>(&text).ok());
         if let Some(earlier) = earlier.filter(|kept| (&kept.program, &kept.words) == (program, &words) && !self.fresh) {
             return Ok(earlier.row);
         }
-        let deep = picture.with_extension("16.png");
-        let stats = self.program.measure(&[words.as_slice(), &deep_to(&deep)].concat(), picture)?;
+        let stats = self.program.measure(&words, picture)?;
         let comparison = self.program.compare(&deep, reference)?;
         let row = Row {
             scene: scene.name.clone(),

@@ -31,8 +31,8 @@ fn light(run: &Run) -> String {
          by `--oit tiles --places 4`, but for `nearest`, which the reference renderer draws (`--reference-light nearest`): the method of TressFX 4.1, \
         light by the distance behind the nearest fibre that a light sees, in maps of 2048x2048, with so many radii from one fibre to the next. \
         What is opaque is traced for it, and nothing shades the sky. A groom is seen as it is in its file, and after {} frames of a head that is shaken. \
-         Mean FLIP of the whole picture, and PSNR in dB behind it:\n\n",
-        run.setting.samples, run.setting.frames
+         Mean FLIP of the whole picture, of {} bits a channel, and PSNR in dB behind it:\n\n",
+        run.setting.samples, run.setting.frames, run.setting.bits
     );
     let mut methods: Vec<(&str, u64)> = Vec::new();
     for row in &run.rows {
@@ -93,8 +93,8 @@ fn devices(run: &Run) -> String {
         false => format!("* {backend}: times were taken on {adapter}.\n"),
         true => format!(
             "* {backend}: times were taken on {adapter}, which is **a CPU that plays a GPU**. They say nothing of the times on a \
-             GPU, nor of their order. Mesa's ends a shader after 65,535 rounds of its loops, so that rows of pixels may be missing \
-             where much hair lies in one tile.\n"
+             GPU, nor of their order. Mesa's ends a shader after 65,535 rounds of its loops: tiles end before, and count what they leave out \
+             as dropped.\n"
         ),
     };
     devices.into_iter().map(of).collect()

@@ -13,7 +13,8 @@ gpu_struct! {
     pub struct Counters {
         /// Fragments that passed the depth test. Where it is saturated, there were at least so many.
         pub fragments: u32,
-        /// What found no room in the pool and is missing in the picture: fragments, or references of tiles to segments.
+        /// What found no room in the pool and is missing in the picture: fragments, or references of tiles to segments. On a CPU also references, at least
+        /// one, that a group of tiles has not come to, since the driver would have ended its loops.
         pub dropped: u32,
         /// Pixels with at least one fragment.
         pub pixels_with_hair: u32,

@@ -14,7 +14,7 @@ use crate::strands::SectionDraw;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DrawError {
-    /// More views than a frame can have.
+    /// More views than the renderer was made for.
     #[error("hair.render: {given} views, a frame can have {most}")]
     Views {
         /// How many there are.

@@ -40,7 +40,7 @@ fn check_whole(args: &Render, drawn: &RenderStats) -> Result<()> {
         return Ok(());
     }
     let what = if drawn.technique == "tiles" { "references of tiles to segments" } else { "fragments" };
-    let missing = format!("{} {what} found no room: hair is missing in the picture", drawn.dropped);
+    let missing = format!("{} {what} found no room or were not come to: hair is missing in the picture", drawn.dropped);
     let merged = format!("{} fragments found no room and were merged: hair is there, its order is not", drawn.merged);
     let losses = [(drawn.dropped, missing), (drawn.merged, merged)];
     let said: Vec<_> = losses.into_iter().filter_map(|(count, said)| (count > 0).then_some(said)).collect();

@@ -3,7 +3,7 @@
 struct Counters {
     // Fragments that passed the depth test.
     fragments: atomic<u32>,
-    // What found no room: fragments, or references.
+    // What found no room: fragments, or references; or that a group of tiles did not come to, see `turns`.
     dropped: atomic<u32>,
     // Pixels with at least one fragment.
     pixels_with_hair: atomic<u32>,

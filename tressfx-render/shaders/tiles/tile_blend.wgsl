@@ -242,7 +242,7 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         workgroupBarrier();
         if lane == 0u {
             atomicStore(&hit_count, 0u);
-            @if(few_turns) { note_chunk((count * sharing + LANES - 1u) / LANES); }
+            @if(few_turns) { note_chunk(LOOKS); }
         }
         workgroupBarrier();
         @if(few_turns) {

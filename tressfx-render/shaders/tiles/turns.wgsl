@@ -1,11 +1,12 @@
 // Turns of the loops of a lane. Mesa's CPU driver ends all loops of a thread without a word once they have gone round 65,535 times together: lanes
-// would then miss each other at barriers, and write where they must not. There (`few_turns`) a group ends before that, and what it has not blended is dropped.
+// would then miss each other at barriers, and write where they must not. There (`few_turns`) a group ends before that, and counts the references
+// of its tile behind there as dropped. The end of a loop counts too; loops of constant length are taken as unrolled but where it costs little.
 
 import package::entries::{most_of_a_pixel, ties};
 
-// For each chunk of references, and for each segment that a lane draws: as many pixels as a quarter has.
-const TURNS_OF_A_CHUNK: u32 = 7u;
-const TURNS_OF_A_SEGMENT: u32 = 21u;
+// For each chunk of references its looks, and for each segment that a lane draws the rows and the pixels of a quarter.
+const TURNS_OF_A_CHUNK: u32 = 10u;
+const TURNS_OF_A_SEGMENT: u32 = 23u;
 // A lane has so many fragments to find the rank of, those of its pixel to blend, and, where depths are the same, to find its place among these.
 const TURNS_OF_AN_ENTRY: u32 = 4u;
 const TURNS_OF_A_TIE: u32 = 3u;
@@ -21,9 +22,10 @@ fn may_go_on() -> bool {
     return turns < MOST_TURNS;
 }
 
-// One lane comes here, after each chunk of references of which each lane draws so many segments.
-fn note_chunk(segments: u32) {
-    turns += TURNS_OF_A_CHUNK + TURNS_OF_A_SEGMENT * segments;
+// One lane comes here, after each chunk of references of which a lane draws so many segments at most. (How many they are depends on the order of references,
+// which is another one in each run: a group would end somewhere else.)
+fn note_chunk(most_segments: u32) {
+    turns += TURNS_OF_A_CHUNK + TURNS_OF_A_SEGMENT * most_segments;
 }
 
 // One lane comes here, after each unit.

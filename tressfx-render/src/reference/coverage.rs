@@ -68,7 +68,11 @@ fn places(count: u32) -> impl Iterator<Item = DVec2> {
 impl Stripe {
     /// Shares of 4 or 16 places, so that their mean is the area: all of them smaller by one factor than their intervals across the line, or what they
     /// leave free.
+    ///
+    /// # Panics
+    /// If there are to be others than 4 or 16.
     pub fn shares(&self, count: u32) -> Vec<f64> {
+        assert!(matches!(count, 4 | 16), "{count} places");
         let Self { distance, half_width, normal, covered } = *self;
         let reach = 0.5 / f64::from(count) * normal.abs().element_sum();
         let share = |place: DVec2| {

@@ -18,6 +18,9 @@ pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([
 }
 
 /// The same where light passes so many places of a pixel for themselves, 4 or 16.
+///
+/// # Panics
+/// If there are others.
 pub fn exact_at_places(
     view: &View,
     lights: &Lights,

@@ -31,6 +31,9 @@ pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, tail: Tail, unlit
 }
 
 /// The same with all fragments in order, where light passes so many places of the pixel for themselves, 4 or 16.
+///
+/// # Panics
+/// If there are others.
 pub fn resolve_at_places(fragments: &mut [Fragment], places: u32) -> DVec4 {
     fragments.sort_by(|a, b| b.nearness.total_cmp(&a.nearness));
     let mut color = DVec3::ZERO;
