@@ -2,28 +2,19 @@
 
 use anyhow::{Result, bail};
 
-use crate::figures::{Row, Run, Setting};
+use crate::figures::{Row, Run};
 
 /// How much an error may grow.
 const GROWTH: f64 = 1.1;
 /// What an error may grow by in any case, since figures near 0 are rounding: FLIP, share of the root mean square, steps of 8 bits.
 const SLACK: [f64; 3] = [1e-5, 1e-5, 1.0];
 
-/// # Errors
-/// If what is stored was measured with another setting.
-pub(crate) fn check_setting(stored: &Run, setting: Setting) -> Result<()> {
-    if stored.setting != setting {
-        bail!("the stored figures are of {:?}, these of {setting:?}: measure all anew", stored.setting);
-    }
-    Ok(())
-}
-
 /// Says which errors have grown.
 ///
 /// # Errors
 /// If one has grown by more than 10 %, or if there is nothing to compare.
 pub(crate) fn check(stored: &Run, run: &Run) -> Result<()> {
-    check_setting(stored, run.setting)?;
+    stored.check_setting(run.setting)?;
     let before = |row: &Row| stored.rows.iter().find(|old| (&old.scene, &old.method) == (&row.scene, &row.method));
     let pairs: Vec<_> = run.rows.iter().filter_map(|row| Some((before(row)?, row))).collect();
     if pairs.is_empty() {

@@ -127,11 +127,17 @@ impl Run {
         scenes
     }
 
+    /// Whether a newer run with this setting can be compared with it, or put beside it.
+    pub(crate) fn check_setting(&self, newer: Setting) -> Result<()> {
+        if self.setting != newer {
+            bail!("what is stored was measured at another setting, {:?}, not {newer:?}", self.setting);
+        }
+        Ok(())
+    }
+
     /// The same with the scenes of a newer run in the place of what it knows of them; those that it does not know come last.
     pub(crate) fn with(self, newer: Self) -> Result<Self> {
-        if self.setting != newer.setting {
-            bail!("the rows that stay were measured at another setting: {:?}", self.setting);
-        }
+        self.check_setting(newer.setting)?;
         let stay = self.rows.iter().filter(|row| newer.of_scene(&row.scene).next().is_none());
         let [old, new]: [BTreeSet<_>; 2] =
             [stay.map(Row::device).collect(), newer.rows.iter().map(Row::device).collect()];

@@ -101,7 +101,7 @@ fn main() -> Result<()> {
     }
     if let Some(stored) = stored.as_ref().filter(|_| args.check || !args.scenes.is_empty()) {
         // Said before all is measured.
-        check::check_setting(stored, extent.setting())?;
+        stored.check_setting(extent.setting())?;
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
     let scenes = scene::named(scene::scenes(extent), &args.scenes)?;

@@ -113,16 +113,18 @@ fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn 
         .x_label_formatter(&|ms| format!("{ms}"))
         .draw()?;
     draw_front(&mut chart, points)?;
+    draw_legend(&legend, 0, "none is faster and more exact", FRONT)?;
+    let mut row = 1;
     for (family, (of, color)) in FAMILIES.iter().zip(COLORS).enumerate() {
         let own: Vec<_> = points.iter().filter(|point| point.family == family).copied().collect();
         if !own.is_empty() {
             draw_family(&mut chart, color, &own)?;
-            draw_legend(&legend, family as i32 + 1, of.name, color)?;
+            draw_legend(&legend, row, of.name, color)?;
+            row += 1;
         }
     }
-    draw_legend(&legend, 0, "none is faster and more exact", FRONT)?;
     if points.iter().any(|point| point.is_hollow) {
-        draw_legend(&legend, FAMILIES.len() as i32 + 1, "hollow: raw Vulkan", WHITE)?;
+        draw_legend(&legend, row, "hollow: raw Vulkan", WHITE)?;
     }
     area.present()
 }

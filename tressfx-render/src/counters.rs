@@ -62,8 +62,8 @@ pub(crate) struct ViewCounters {
 
 impl ViewCounters {
     pub(crate) fn new(backend: &mut dyn Backend, views: usize, kept: u64) -> Result<Self> {
-        let mut of_a_view = |_| storage(backend, "hair.render.counters", Counters::BYTES + kept);
-        Ok(Self { buffers: (0..views).map(&mut of_a_view).collect::<Result<_>>()?, kept })
+        let of_a_view = |_| storage(backend, "hair.render.counters", Counters::BYTES + kept);
+        Ok(Self { buffers: (0..views).map(of_a_view).collect::<Result<_>>()?, kept })
     }
 
     /// Size of all of them on the GPU.

@@ -176,7 +176,7 @@ impl Ppll {
             fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false, output), output.color)?,
             resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), output))?,
             composite: Composite::new(backend, output)?,
-            pool: NodePool::new(backend, size, desc)?,
+            pool: NodePool::new(backend, size, desc, output.views)?,
             bounded: Bounded::default(),
             kept: 0,
             unproven: None,
@@ -314,7 +314,7 @@ impl Ppll {
 impl TechniqueInstance for Ppll {
     fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
         check(backend, size, self.output)?;
-        let pool = NodePool::new(backend, size, &self.desc)?;
+        let pool = NodePool::new(backend, size, &self.desc, self.output.views)?;
         let resolved = Resolved::new(backend, size, self.output)?;
         let bounded = &self.bounded;
         let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.output);

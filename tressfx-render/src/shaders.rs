@@ -58,9 +58,9 @@ pub(crate) fn shader(
     library: &'static [Module],
     specialization: &Specialization,
 ) -> Result<Arc<Shader>> {
-    // A fragment has one opacity, a strand no copies, and loops may go on, unless somebody asks for more.
+    // A fragment has one opacity, and a strand no copies, unless somebody asks for more.
     let mut specialization = specialization.clone();
-    for feature in ["places", "copies", "few_turns"] {
+    for feature in ["places", "copies"] {
         if specialization.features().iter().all(|(name, _)| *name != feature) {
             specialization = specialization.feature(feature, false);
         }

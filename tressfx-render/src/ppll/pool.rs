@@ -12,7 +12,6 @@ use crate::counters::ViewCounters;
 use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
 use crate::usage::is_surplus;
-use crate::views::MAX_VIEWS;
 
 /// A pool is made smaller that is more than so many times as large as what was needed.
 const SURPLUS: f64 = 1.6;
@@ -76,8 +75,8 @@ pub(crate) struct NodePool {
 }
 
 impl NodePool {
-    /// A pool for `size` pixels, one fragment for each.
-    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &PpllDesc) -> Result<Self> {
+    /// A pool for `size` pixels, one fragment for each, and for so many views.
+    pub(crate) fn new(backend: &mut dyn Backend, size: [u32; 2], desc: &PpllDesc, views: usize) -> Result<Self> {
         let pixels = pixels(size);
         let caps = backend.caps();
         let bytes = desc.max_node_bytes.min(caps.max_storage_binding_bytes).min(caps.max_buffer_bytes);
@@ -85,7 +84,7 @@ impl NodePool {
         let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
         let heads = storage(backend, "hair.render.heads", HEAD_BYTES * pixels)?;
-        let counters = ViewCounters::new(backend, MAX_VIEWS, 0)?;
+        let counters = ViewCounters::new(backend, views, 0)?;
         let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
