@@ -12,7 +12,7 @@ pub(crate) struct Family {
 }
 
 /// All families, in the order of the tables.
-pub(crate) const FAMILIES: [Family; 7] = [
+pub(crate) const FAMILIES: [Family; 9] = [
     Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
     Family {
         name: "ppll-raster",
@@ -20,6 +20,8 @@ pub(crate) const FAMILIES: [Family; 7] = [
         ks: &[0, 1, 2, 4, 8, 16, 32],
         quick_ks: &[8],
     },
+    Family { name: "ppll-4-places", words: &["--oit", "ppll", "--places", "4"], ks: &[8, 16], quick_ks: &[8] },
+    Family { name: "ppll-16-places", words: &["--oit", "ppll", "--places", "16"], ks: &[8], quick_ks: &[8] },
     Family { name: "shortcut-mean", words: &["--oit", "shortcut"], ks: &[1, 2, 3, 4, 8], quick_ks: &[1, 3, 8] },
     Family {
         name: "shortcut-ordered",
@@ -28,7 +30,7 @@ pub(crate) const FAMILIES: [Family; 7] = [
         quick_ks: &[3, 8],
     },
     Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
-    Family { name: "tiles-four-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
+    Family { name: "tiles-4-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
     Family { name: "tiles-16-places", words: &["--oit", "tiles", "--places", "16"], ks: &[], quick_ks: &[] },
 ];
 
@@ -97,8 +99,8 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 27);
+        assert_eq!(methods(Extent::Full).len(), 30);
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
-        assert_eq!(family_of("tiles"), Some((4, "")));
+        assert_eq!(family_of("tiles"), Some((6, "")));
     }
 }

@@ -14,10 +14,12 @@ const SIZE: (u32, u32) = (940, 480);
 /// Where the legend begins: beside the plot, since points may lie anywhere in it.
 const LEGEND: i32 = 690;
 
-/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito).
+/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey is added).
 const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(0, 114, 178),
     RGBColor(86, 180, 233),
+    RGBColor(184, 172, 20),
+    RGBColor(120, 120, 120),
     RGBColor(213, 94, 0),
     RGBColor(230, 159, 0),
     RGBColor(0, 158, 115),

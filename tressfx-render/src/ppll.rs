@@ -17,11 +17,12 @@ use tressfx_core::view::View;
 use crate::composite::Composite;
 use crate::counters::Counters;
 use crate::output::Output;
+use crate::places::check_places;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
 use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
-use crate::shaders::{GROUP, PIXELS, with_shared};
+use crate::shaders::{FRONT, GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
 use crate::usage::Usage;
@@ -42,7 +43,8 @@ const LABEL: Label = "hair.render.ppll";
 const SPARE: f64 = 1.1;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<5, 21>([
+const LIBRARY: &[Module] = &with_shared::<6, 22>([
+    FRONT,
     PIXELS,
     ("kept", include_str!("../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../shaders/ppll/node.wgsl")),
@@ -64,12 +66,15 @@ pub struct PpllDesc {
     /// 4 for each of the nearest a pixel, and a third walk over the strands. Lists become so by themselves where there would be
     /// more fragments than there may be room for.
     pub cap: Option<u32>,
-    /// Memory that the lists of fragments may take, 16 bytes a fragment. The device's own limit for one binding holds too.
+    /// Memory that the lists of fragments may take, 16 bytes a fragment, 20 with several places. The device's own limit for one binding holds too.
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
     pub count_limit: u32,
     /// What fills the lists.
     pub fill: Fill,
+    /// Places in a pixel where light passes hair for itself, one of [`PLACES`](crate::PLACES). The fragments behind the `k` nearest
+    /// cover all of them alike.
+    pub places: u32,
 }
 
 impl PpllDesc {
@@ -109,6 +114,12 @@ impl PpllDesc {
         Self { fill, ..self }
     }
 
+    /// The same with another number of places in a pixel.
+    #[must_use]
+    pub fn places(self, places: u32) -> Self {
+        Self { places, ..self }
+    }
+
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
@@ -119,7 +130,7 @@ impl PpllDesc {
     }
 
     fn variant(&self, bounded: bool, output: Output) -> Variant {
-        Variant { k: self.k, tail: self.tail, bounded, output }
+        Variant { k: self.k, tail: self.tail, places: self.places, bounded, output }
     }
 }
 
@@ -127,7 +138,7 @@ impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
         let (count_limit, fill) = (Self::COUNT_LIMIT, Fill::Compute);
-        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill }
+        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill, places: 1 }
     }
 }
 
@@ -168,12 +179,13 @@ impl Ppll {
     ) -> Result<Self> {
         let output = output.into();
         check_k(LABEL, desc.k, &K_RANGE)?;
+        check_places(LABEL, desc.places)?;
         check(backend, size, output)?;
         let mut made = Self {
             desc: *desc,
             size,
             output,
-            fill: Segments::new(backend, desc.fill, &fill::SHADERS, &fill::bounded(false, output), output.color)?,
+            fill: fill::pass(backend, desc, false, output)?,
             resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), output))?,
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
@@ -194,7 +206,7 @@ impl Ppll {
     /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
     fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
         let kernel = self.resolve.prepare(backend, desc.variant(true, self.output))?;
-        Ok((kernel, self.bounded.prepare(backend, self.size, desc.asked(), desc.fill, self.output)?))
+        Ok((kernel, self.bounded.prepare(backend, self.size, desc, self.output)?))
     }
 
     /// Does so.
@@ -317,7 +329,7 @@ impl TechniqueInstance for Ppll {
         let pool = NodePool::new(backend, size, &self.desc, self.output.views)?;
         let resolved = Resolved::new(backend, size, self.output)?;
         let bounded = &self.bounded;
-        let prepare = || bounded.prepare(backend, size, self.desc.asked(), self.desc.fill, self.output);
+        let prepare = || bounded.prepare(backend, size, &self.desc, self.output);
         if let Some(prepared) = bounded.is_on().then(prepare).transpose()? {
             self.bounded.turn_on(backend, prepared);
         }
@@ -353,7 +365,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
-        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill);
+        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill, desc.places);
         let Technique::Ppll(desc) = technique else { return Err(another_technique(LABEL)) };
         check_k(LABEL, desc.k, &K_RANGE)?;
         if fixed(desc) != fixed(&self.desc) {

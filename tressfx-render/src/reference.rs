@@ -38,7 +38,7 @@ pub use crate::scattering::FibreTable;
 pub use composite_compute::composite_compute;
 pub use coverage::{Stripe, coverage};
 pub use fill::{Fragment, fill};
-pub use image::{exact, exact_at_places, resolved, resolved_with_tail, shortcut, supersampled};
+pub use image::{exact, resolved, resolved_at_places, resolved_with_tail, shortcut, supersampled};
 pub use nearest::nearest;
 pub use resolve::{resolve, resolve_at_places, resolve_with_tail};
 pub use seen_keys::seen_keys;

@@ -36,6 +36,9 @@ pub(crate) const SHARED: [Module; 16] = [
 /// The end of a technique with one thread a pixel.
 pub(crate) const PIXELS: Module = ("pixels", include_str!("../shaders/shared/pixels.wgsl"));
 
+/// What lies before the hair that comes next.
+pub(crate) const FRONT: Module = ("front", include_str!("../shaders/shared/front.wgsl"));
+
 /// The triangles of tiles with hair.
 pub(crate) const CORNER: Module = ("corner", include_str!("../shaders/shared/corner.wgsl"));
 

@@ -18,6 +18,7 @@ use tressfx_core::view::View;
 use crate::composite::Composite;
 use crate::counters::Counters;
 use crate::output::Output;
+use crate::places::check_places;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
 use crate::resolved::{Resolved, check_pixels};
@@ -45,8 +46,7 @@ pub struct TilesDesc {
     /// Whether segments are left out that were hidden by other hair in the frame before. A tile in which they are not hidden any more
     /// is drawn again with all of them, so that the picture is the same. None: where hair is dense, in more than [`TilesDesc::few_tiles`].
     pub skips_hidden: Option<bool>,
-    /// Places in a pixel where light passes hair for itself, one of [`TilesDesc::PLACES`]. With one, what a strand covers of a pixel
-    /// hides that share of all that is behind it. With 4, or 16, strands that run behind each other are seen beside each other.
+    /// Places in a pixel where light passes hair for itself, one of [`PLACES`](crate::PLACES).
     pub places: u32,
     /// Tiles with hair up to which the pixels of each are divided among 16 groups, not among four: where hair covers little of the
     /// picture, more of the device has work. The picture is the same. Best is about as many as the device can blend at once, each by four
@@ -60,9 +60,6 @@ impl TilesDesc {
 
     /// The largest [`TilesDesc::max_reference_bytes`].
     pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
-
-    /// What [`TilesDesc::places`] may be.
-    pub const PLACES: [u32; 3] = [1, 4, 16];
 
     /// The same with another number of places in a pixel.
     #[must_use]
@@ -146,10 +143,7 @@ impl Tiles {
     ) -> Result<Self> {
         let output = output.into();
         check(backend, size, output)?;
-        if !TilesDesc::PLACES.contains(&desc.places) {
-            let message = format!("{} places in a pixel, there can be 1, 4 or 16", desc.places);
-            return Err(Error::rule("hair.render.tiles", message));
-        }
+        check_places("hair.render.tiles", desc.places)?;
         Ok(Self {
             desc: *desc,
             output,

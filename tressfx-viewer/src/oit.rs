@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use tressfx_render::{AutoDesc, Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
+use tressfx_render::{AutoDesc, Fill, K_RANGE, PLACES, PpllDesc, ShortCutDesc, Tail, Technique, TilesDesc};
 
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Oit {
@@ -20,14 +20,14 @@ pub(crate) struct Oit {
     /// With `--oit ppll` or `auto`: fragments of a pixel that take memory, the nearest; the others are merged. Without it, all
     #[arg(long, value_name = "N")]
     oit_cap: Option<u32>,
-    /// With `--oit ppll` or `auto`: bytes that the lists may take, 16 a fragment. Without it, 256 MiB
+    /// With `--oit ppll` or `auto`: bytes that the lists may take, 16 a fragment, 20 with several places. Without it, 256 MiB
     #[arg(long, value_name = "BYTES")]
     oit_bytes: Option<u64>,
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
-    /// With `--oit tiles`: places in a pixel where light passes hair for itself, 1, 4 or 16. With more the picture is nearer to the truth, and
-    /// takes longer; 1 by default
+    /// Without `--oit shortcut`: places in a pixel where light passes hair for itself, 1, 4 or 16. With more the picture is nearer to the truth,
+    /// and takes longer; 1 by default
     #[arg(long, value_name = "N")]
     places: Option<u32>,
     /// What turns segments of strands into fragments; the picture is the same
@@ -102,8 +102,8 @@ impl Oit {
         if self.oit_ordered && self.oit != OitName::Shortcut {
             bail!("--oit-ordered belongs to --oit shortcut");
         }
-        if self.places.is_some() && self.oit != OitName::Tiles {
-            bail!("--places belongs to --oit tiles");
+        if self.places.is_some() && self.oit == OitName::Shortcut {
+            bail!("--places belongs to --oit ppll, --oit tiles and --oit auto");
         }
         let of_lists =
             [("tail", self.oit_tail.is_some()), ("cap", self.oit_cap.is_some()), ("bytes", self.oit_bytes.is_some())];
@@ -114,7 +114,7 @@ impl Oit {
         }
         match self.oit {
             OitName::Ppll => Ok(self.lists()?.into()),
-            OitName::Auto => Ok(AutoDesc::default().lists(self.lists()?).into()),
+            OitName::Auto => Ok(AutoDesc::default().lists(self.lists()?).tiles(self.tiles()?).into()),
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
@@ -133,16 +133,19 @@ impl Oit {
         let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
         let desc = PpllDesc::default().tail(tail).cap(self.oit_cap).fill(self.fill.fill());
         let bytes = self.oit_bytes.unwrap_or(desc.max_node_bytes);
-        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?))
+        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?).places(self.places()?))
     }
 
     fn tiles(&self) -> Result<TilesDesc> {
-        let desc = TilesDesc::default();
-        let places = self.places.unwrap_or(desc.places);
-        if !TilesDesc::PLACES.contains(&places) {
+        Ok(TilesDesc::default().places(self.places()?))
+    }
+
+    fn places(&self) -> Result<u32> {
+        let places = self.places.unwrap_or(1);
+        if !PLACES.contains(&places) {
             bail!("--places {places}: it must be 1, 4 or 16");
         }
-        Ok(desc.places(places))
+        Ok(places)
     }
 
     fn k(&self, default: u32, range: &RangeInclusive<u32>) -> Result<u32> {

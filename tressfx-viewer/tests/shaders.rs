@@ -44,6 +44,8 @@ const VARIANTS: [&[&str]; 20] = [
     &["--oit", "tiles", "--composite", "compute", "--for-cpu"],
     &["--oit", "tiles", "--places", "4", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles", "--places", "16", "--hair-output"],
+    &["--oit", "ppll", "--places", "4", "--fill", "raster"],
+    &["--oit", "ppll", "--places", "16", "--oit-cap", "8", "--hair-output"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {

@@ -119,7 +119,7 @@ impl Setting {
     }
 
     /// Every technique, so set.
-    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 10] {
+    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 12] {
         let &Self { k, tail, cap, layers, .. } = self;
         let mut lists = PpllDesc::default().k(k).tail(tail).cap(cap);
         lists.max_node_bytes = self.nodes.unwrap_or(lists.max_node_bytes);
@@ -131,6 +131,8 @@ impl Setting {
         [
             ("lists", lists.into()),
             ("lists, raster", lists.fill(Fill::Raster).into()),
+            ("lists, four places", lists.places(4).into()),
+            ("lists, 16 places, raster", lists.places(16).fill(Fill::Raster).into()),
             ("mean", mean.into()),
             ("mean, raster", mean.fill(Fill::Raster).into()),
             ("in order", mean.ordered(true).into()),

@@ -1,6 +1,26 @@
-// Lists of fragments, one a pixel. A node is a key, red and green, blue and alpha, and the number of the next.
+// Lists of fragments, one a pixel. A node is a key, red and green, blue and alpha, and the number of the next; with places, what the fragment
+// covers comes last.
 
 import package::fragment::{Fragment, depth_key, pack_color};
+@if(places)
+import package::places::pack_stripe;
+
+@if(!places)
+alias Node = vec4<u32>;
+@if(places)
+struct Node {
+    key: u32,
+    red_green: u32,
+    blue_alpha: u32,
+    next: u32,
+    stripe: u32,
+}
+
+// A node without the number of the next.
+@if(!places)
+alias Content = vec3<u32>;
+@if(places)
+alias Content = vec4<u32>;
 
 // Nodes are numbered from 1, so that a cleared head is an empty list.
 const NOTHING: u32 = 0u;
@@ -23,6 +43,19 @@ struct PoolUniform {
     unlit: vec4<f32>,
 }
 
-fn pack_node(fragment: Fragment, next: u32) -> vec4<u32> {
-    return vec4(depth_key(fragment.nearness), pack_color(fragment), next);
+fn pack_node(fragment: Fragment, next: u32) -> Node {
+    let key = depth_key(fragment.nearness);
+    let color = pack_color(fragment);
+    @if(!places) { return vec4(key, color, next); }
+    @if(places) { return Node(key, color.x, color.y, next, pack_stripe(fragment.stripe)); }
+}
+
+fn next_of(node: Node) -> u32 {
+    @if(!places) { return node.w; }
+    @if(places) { return node.next; }
+}
+
+fn content_of(node: Node) -> Content {
+    @if(!places) { return node.xyz; }
+    @if(places) { return vec4(node.key, node.red_green, node.blue_alpha, node.stripe); }
 }

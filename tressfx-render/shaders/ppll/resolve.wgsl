@@ -7,7 +7,8 @@
 
 import package::constants::K;
 import package::fragment::{OPAQUE, packed_alpha, packed_color};
-import package::node::{NOTHING, PoolUniform};
+import package::front::{Front, nothing_yet, over, passes};
+import package::node::{Content, NOTHING, Node, PoolUniform, content_of, next_of};
 import package::pixels::{count_hairy, counters, index_of, is_inside, pixel_of, view};
 import package::rest::{SUMS, UNIT};
 import package::sums::{FULL, optical_depth, transmittance_of};
@@ -19,18 +20,23 @@ import package::fragment::{nearness_of, seen_key};
 import package::pixels::write_seen_pixel;
 @if(!hair_output)
 import package::pixels::write_pixel;
+@if(places)
+import package::places::{all_places, parts_of, unpack_stripe};
 @if(shaded)
 import package::sums::{mean_color, weighted};
 
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
-@group(0) @binding(3) var<storage, read> nodes: array<vec4<u32>>;
+@group(0) @binding(3) var<storage, read> nodes: array<Node>;
 @if(bounded)
 @group(0) @binding(8) var<storage, read> rest: array<u32>;
 
 // An array has at least one element, and the one of K = 0 is never looked at.
 const ROOM: u32 = max(K, 1u);
-const FAR: vec3<u32> = vec3(0xffffffffu, 0u, 0u);
+@if(!places)
+const FAR: Content = vec3(0xffffffffu, 0u, 0u);
+@if(places)
+const FAR: Content = vec4(0xffffffffu, 0u, 0u, 0u);
 
 // What lies behind the K nearest.
 struct Tail {
@@ -40,11 +46,17 @@ struct Tail {
     color: vec3<u32>,
 }
 
-fn is_before(a: vec3<u32>, b: vec3<u32>) -> bool {
+@if(!places)
+fn is_before(a: Content, b: Content) -> bool {
     return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
 }
 
-fn add(tail: ptr<function, Tail>, node: vec3<u32>) {
+@if(places)
+fn is_before(a: Content, b: Content) -> bool {
+    return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && (a.z < b.z || (a.z == b.z && a.w < b.w)))));
+}
+
+fn add(tail: ptr<function, Tail>, node: Content) {
     let alpha = packed_alpha(node.yz);
     (*tail).optical = min((*tail).optical + optical_depth(alpha), FULL);
     (*tail).weight = min((*tail).weight + alpha, FULL);
@@ -59,20 +71,28 @@ fn tail_color(tail: Tail) -> vec3<f32> {
     @if(!shaded) { return pool.unlit.rgb; }
 }
 
-fn over(nearest: ptr<function, array<vec3<u32>, ROOM>>, tail: Tail) -> vec4<f32> {
-    var color = vec3(0.0);
-    var transmittance = 1.0;
+fn over_node(front: Front, node: Content) -> Front {
+    let alpha = f32(packed_alpha(node.yz)) / OPAQUE;
+    @if(!places) { return over(front, packed_color(node.yz), alpha, 1u); }
+    @if(places) { return over(front, packed_color(node.yz), parts_of(unpack_stripe(node.w), alpha), 1u); }
+}
+
+// A tail covers all places alike.
+fn over_tail(front: Front, tail: Tail) -> Front {
+    let alpha = 1.0 - transmittance_of(tail.optical);
+    @if(!places) { return over(front, tail_color(tail), alpha, 1u); }
+    @if(places) { return over(front, tail_color(tail), all_places(alpha), 1u); }
+}
+
+fn blend(nearest: ptr<function, array<Content, ROOM>>, tail: Tail) -> vec4<f32> {
+    var front = nothing_yet();
     for (var i = 0u; i < K; i++) {
-        let alpha = f32(packed_alpha((*nearest)[i].yz)) / OPAQUE;
-        color += transmittance * alpha * packed_color((*nearest)[i].yz);
-        transmittance *= 1.0 - alpha;
+        front = over_node(front, (*nearest)[i]);
     }
     if tail.weight > 0u {
-        let behind = transmittance * transmittance_of(tail.optical);
-        color += (transmittance - behind) * tail_color(tail);
-        transmittance = behind;
+        front = over_tail(front, tail);
     }
-    return vec4(color, 1.0 - transmittance);
+    return vec4(front.color, 1.0 - passes(front));
 }
 
 // What the fragments of a pixel without nodes have left.
@@ -88,7 +108,7 @@ fn rest_of(index: u32) -> Tail {
 }
 
 // Puts a node at its place among the nearest, which is before the last one. Those behind it move up; returns the one that falls out.
-fn insert(nearest: ptr<function, array<vec3<u32>, ROOM>>, node: vec3<u32>) -> vec3<u32> {
+fn insert(nearest: ptr<function, array<Content, ROOM>>, node: Content) -> Content {
     let last = (*nearest)[ROOM - 1u];
     var is_here = true;
     for (var i = ROOM - 1u; i > 0u; i--) {
@@ -102,7 +122,7 @@ fn insert(nearest: ptr<function, array<vec3<u32>, ROOM>>, node: vec3<u32>) -> ve
 }
 
 fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
-    var nearest: array<vec3<u32>, ROOM>;
+    var nearest: array<Content, ROOM>;
     for (var i = 0u; i < ROOM; i++) {
         nearest[i] = FAR;
     }
@@ -112,15 +132,15 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     var node = nodes[max(head, 1u) - 1u];
     var next = head;
     while next != NOTHING {
-        next = node.w;
-        var passed = node.xyz;
+        next = next_of(node);
+        var passed = content_of(node);
         node = nodes[max(next, 1u) - 1u];
         if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             passed = insert(&nearest, passed);
         }
         @if(shaded || unshaded) { add(&tail, passed); }
     }
-    return over(&nearest, tail);
+    return blend(&nearest, tail);
 }
 
 // The key of the nearest fragment of a pixel, whether or not it has a node.
@@ -131,8 +151,9 @@ fn nearest_seen(index: u32, head: u32) -> u32 {
     var next = head;
     while next != NOTHING {
         let node = nodes[next - 1u];
-        next = node.w;
-        seen = max(seen, seen_key(nearness_of(node.x), packed_alpha(node.yz)));
+        let content = content_of(node);
+        next = next_of(node);
+        seen = max(seen, seen_key(nearness_of(content.x), packed_alpha(content.yz)));
     }
     return seen;
 }

@@ -2,7 +2,7 @@
 
 import package::counters::Counters;
 import package::fragment::Fragment;
-import package::node::{PoolUniform, pack_node};
+import package::node::{Node, PoolUniform, pack_node};
 import package::screen::view;
 
 @if(bounded)
@@ -12,7 +12,7 @@ import package::rest::add_to_rest;
 
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
-@group(0) @binding(8) var<storage, read_write> nodes: array<vec4<u32>>;
+@group(0) @binding(8) var<storage, read_write> nodes: array<Node>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
 // The keys of the nearest fragments of each pixel, `pool.kept` of them, the largest first.
 @if(bounded)

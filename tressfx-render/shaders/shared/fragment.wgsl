@@ -1,7 +1,7 @@
 // What a strand leaves in a pixel.
 
 @if(places)
-import package::places::Shares;
+import package::places::Stripe;
 
 struct Fragment {
     color: vec3<f32>,
@@ -9,9 +9,9 @@ struct Fragment {
     nearness: f32,
     // In units of 1 / 65535; 0 is no fragment.
     alpha: u32,
-    // Opacity at each place, see `places`.
+    // What it covers.
     @if(places)
-    parts: Shares,
+    stripe: Stripe,
 }
 
 const OPAQUE: f32 = 65535.0;

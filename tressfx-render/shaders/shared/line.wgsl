@@ -7,7 +7,7 @@ import package::ribbon::{Ribbon, along, slant_of};
 import package::screen::{scene_nearness, view};
 
 @if(places)
-import package::places::{parts_with_mean, shares_of};
+import package::places::Stripe;
 
 // Colour and opacity at the ends of a segment.
 struct Paint {
@@ -120,10 +120,7 @@ fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, 
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
     let alpha = u32(round(saturate(covered * opacity) * OPAQUE));
     @if(!places) { return Fragment(color, nearness, alpha); }
-    @if(places) {
-        let shares = shares_of(at.y, half_width, line.normal);
-        return Fragment(color, nearness, alpha, parts_with_mean(shares, min(covered, 1.0), opacity));
-    }
+    @if(places) { return Fragment(color, nearness, alpha, Stripe(at.y, half_width, line.normal)); }
 }
 
 // What the ribbon leaves in a pixel: nothing in one of another segment, and nothing behind the scene.

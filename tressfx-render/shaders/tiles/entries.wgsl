@@ -1,8 +1,8 @@
 // The fragments of a unit, in the memory of a group: found in any order, then put into that of pixels, and painted in that of depth.
 
-import package::fragment::{Fragment, pack_color};
+import package::fragment::{Fragment, OPAQUE, pack_color};
 @if(places)
-import package::places::{PackedShares, Shares, is_less_packed, pack_parts, unpack_parts};
+import package::places::{PackedShares, Shares, is_less_packed, pack_parts, parts_of, unpack_parts};
 import package::quarter::PIXELS;
 import package::tiles::VERTEX_MASK;
 import package::unit::{ENTRIES, ENTRIES_OF_A_LANE, LANES};
@@ -160,7 +160,7 @@ fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
         @if(!few_turns) { atomicStore(&ties, 1u); }
         @if(few_turns) { atomicMax(&ties, rank.same); }
     }
-    @if(places) { parts[rank.own] = pack_parts(fragment.parts); }
+    @if(places) { parts[rank.own] = pack_parts(parts_of(fragment.stripe, f32(fragment.alpha) / OPAQUE)); }
     @if(hair_output) { sorted_keys[rank.own] = entry.key; }
     return Painted(pack_color(fragment), pack_rank(rank));
 }
@@ -225,7 +225,7 @@ fn place_by_color(painted: Painted) -> u32 {
 }
 
 @if(places)
-fn parts_of(painted: Painted) -> PackedShares {
+fn packed_parts_of(painted: Painted) -> PackedShares {
     return parts[min(unpack_rank(painted.rank).own, ENTRIES - 1u)];
 }
 
@@ -233,11 +233,11 @@ fn parts_of(painted: Painted) -> PackedShares {
 fn settle_ties(own: OwnPainted) {
     let places = vec3(place_by_color(own.first), place_by_color(own.second), place_by_color(own.third));
     @if(places)
-    let first_parts = parts_of(own.first);
+    let first_parts = packed_parts_of(own.first);
     @if(places)
-    let second_parts = parts_of(own.second);
+    let second_parts = packed_parts_of(own.second);
     @if(places)
-    let third_parts = parts_of(own.third);
+    let third_parts = packed_parts_of(own.third);
     workgroupBarrier();
     put_color(own.first.color, places.x);
     put_color(own.second.color, places.y);

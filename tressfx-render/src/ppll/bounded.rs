@@ -10,11 +10,11 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 
-use super::{fill, nearest};
+use super::{PpllDesc, fill, nearest};
 use crate::output::Output;
 use crate::region::Region;
 use crate::resolved::{pixels, storage};
-use crate::segments::{Fill, Segments};
+use crate::segments::Segments;
 
 /// Bytes of the sums of a pixel, and of the key of a depth where depth is written: see `rest.wgsl`.
 fn rest_bytes(output: Output) -> u64 {
@@ -83,22 +83,21 @@ impl Bounded {
         self.memory.is_some()
     }
 
-    /// Makes what it takes to keep `asked` fragments of a pixel, and changes nothing yet.
+    /// Makes what it takes to keep as many fragments of a pixel as are asked for, and changes nothing yet.
     pub(crate) fn prepare(
         &self,
         backend: &mut dyn Backend,
         size: [u32; 2],
-        asked: u32,
-        fill: Fill,
+        desc: &PpllDesc,
         output: Output,
     ) -> Result<Prepared> {
-        check(backend, size, asked, output)?;
+        check(backend, size, desc.asked(), output)?;
         let make = |backend: &mut dyn Backend| {
-            let fill = Segments::new(backend, fill, &fill::SHADERS, &fill::bounded(true, output), output.color)?;
+            let fill = fill::pass(backend, desc, true, output)?;
             Ok(Kernels { nearest: nearest::pass(backend, output)?, fill })
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
-        Ok(Prepared { kernels, memory: Memory::new(backend, size, asked, output)? })
+        Ok(Prepared { kernels, memory: Memory::new(backend, size, desc.asked(), output)? })
     }
 
     /// Bounds lists with what was prepared.

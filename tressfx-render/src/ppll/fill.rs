@@ -1,18 +1,21 @@
 //! `hair.render.fill` and `hair.render.fill_raster`: segments of strands become fragments in the lists of pixels.
 
-use tressfx_core::shader::Specialization;
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
 
-use super::LIBRARY;
+use super::{LIBRARY, PpllDesc};
 use crate::output::Output;
-use crate::segments::Shaders;
+use crate::places::at_places;
+use crate::segments::{Segments, Shaders};
 
-pub(crate) const SHADERS: Shaders = Shaders {
+const SHADERS: Shaders = Shaders {
     compute: ("hair.render.fill", ("fill", include_str!("../../shaders/ppll/fill.wgsl"))),
     raster: ("hair.render.fill_raster", ("fill_raster", include_str!("../../shaders/ppll/fill_raster.wgsl"))),
     library: LIBRARY,
 };
 
-/// Whether only the nearest fragments of a pixel have nodes.
-pub(crate) fn bounded(on: bool, output: Output) -> Specialization {
-    output.specialization().feature("bounded", on)
+/// The pass; where lists are bounded, only the nearest fragments of a pixel have nodes.
+pub(crate) fn pass(backend: &mut dyn Backend, desc: &PpllDesc, is_bounded: bool, output: Output) -> Result<Segments> {
+    let specialization = at_places(output.specialization().feature("bounded", is_bounded), desc.places);
+    Segments::new(backend, desc.fill, &SHADERS, &specialization, output.color)
 }

@@ -17,8 +17,10 @@ use crate::usage::is_surplus;
 const SURPLUS: f64 = 1.6;
 use crate::views::BoundView;
 
-/// Bytes of a fragment: depth key, colour and alpha, next.
-pub(crate) const NODE_BYTES: u64 = 16;
+/// Bytes of a fragment: depth key, colour and alpha, next; with several places, what it covers.
+fn node_bytes(desc: &PpllDesc) -> u64 {
+    if desc.places > 1 { 20 } else { 16 }
+}
 
 /// Bytes of the number of the first node of a pixel.
 pub(crate) const HEAD_BYTES: u64 = 4;
@@ -59,8 +61,10 @@ pub(crate) struct Nodes {
 pub(crate) struct NodePool {
     /// `u32` a pixel: the number of the first node, from 1; 0 for none.
     pub(crate) heads: BufferId,
-    /// `vec4<u32>` a fragment.
+    /// Four `u32` a fragment, or five.
     pub(crate) nodes: BufferId,
+    /// Bytes of a fragment.
+    node_bytes: u64,
     /// What is counted of each view.
     pub(crate) counters: ViewCounters,
     /// [`PoolUniform`].
@@ -81,14 +85,15 @@ impl NodePool {
         let caps = backend.caps();
         let bytes = desc.max_node_bytes.min(caps.max_storage_binding_bytes).min(caps.max_buffer_bytes);
         let count_limit = desc.count_limit.clamp(1, PpllDesc::COUNT_LIMIT);
-        let largest = (bytes / NODE_BYTES).clamp(1, u64::from(count_limit)) as u32;
+        let node_bytes = node_bytes(desc);
+        let largest = (bytes / node_bytes).clamp(1, u64::from(count_limit)) as u32;
         let capacity = pixels.clamp(1, u64::from(largest)) as u32;
         let heads = storage(backend, "hair.render.heads", HEAD_BYTES * pixels)?;
         let counters = ViewCounters::new(backend, views, 0)?;
-        let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
+        let nodes = storage(backend, "hair.render.nodes", u64::from(capacity) * node_bytes)?;
         let uniform =
             backend.create_buffer(&BufferDesc::uniform("hair.render.pool", size_of::<PoolUniform>() as u64))?;
-        Ok(Self { heads, nodes, counters, uniform, capacity, least: capacity, largest, count_limit })
+        Ok(Self { heads, nodes, node_bytes, counters, uniform, capacity, least: capacity, largest, count_limit })
     }
 
     /// Nodes for `wanted` fragments, or for as many as are allowed, where there is less room; it changes nothing yet.
@@ -106,7 +111,7 @@ impl NodePool {
 
     fn nodes_for(&self, backend: &mut dyn Backend, capacity: u32) -> Result<Nodes> {
         // To destroy the old nodes before would free nothing yet, since older lists may still name them.
-        let buffer = storage(backend, "hair.render.nodes", u64::from(capacity) * NODE_BYTES)?;
+        let buffer = storage(backend, "hair.render.nodes", u64::from(capacity) * self.node_bytes)?;
         Ok(Nodes { buffer, capacity })
     }
 
@@ -150,7 +155,7 @@ impl NodePool {
 
     /// What it takes for `size` pixels.
     pub(crate) fn bytes(&self, size: [u32; 2]) -> u64 {
-        let nodes = (u64::from(self.capacity) * NODE_BYTES).max(16);
+        let nodes = (u64::from(self.capacity) * self.node_bytes).max(16);
         (HEAD_BYTES * pixels(size)).max(16) + nodes + size_of::<PoolUniform>() as u64 + self.counters.bytes()
     }
 

@@ -12,6 +12,7 @@ use super::pool::NodePool;
 use super::{LIBRARY, Tail};
 use crate::bound::Bound;
 use crate::output::Output;
+use crate::places::at_places;
 use crate::resolved::Resolved;
 use crate::shaders::compute;
 use crate::views::BoundView;
@@ -24,6 +25,7 @@ pub const K_RANGE: RangeInclusive<u32> = 0..=32;
 pub(crate) struct Variant {
     pub(crate) k: u32,
     pub(crate) tail: Tail,
+    pub(crate) places: u32,
     /// Whether there is a rest of fragments without nodes.
     pub(crate) bounded: bool,
     pub(crate) output: Output,
@@ -31,8 +33,7 @@ pub(crate) struct Variant {
 
 impl Variant {
     fn specialization(&self) -> Specialization {
-        self.output
-            .specialization()
+        at_places(self.output.specialization(), self.places)
             .feature("shaded", self.tail == Tail::Shaded)
             .feature("unshaded", self.tail == Tail::Unshaded)
             .feature("bounded", self.bounded)

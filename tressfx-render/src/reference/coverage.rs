@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::places::PLACES;
+
 /// The half-widths of the base and of the flat top of a unit square, seen across a line with the unit normal `normal`.
 fn reach(normal: DVec2) -> [f64; 2] {
     let n = normal.abs();
@@ -41,7 +43,7 @@ pub(super) fn between(before: f64, behind: f64, length: f64) -> f64 {
 }
 
 /// What a strand covers of a pixel: the part within `half_width` of a line with the unit normal `normal` that passes at `distance` from the
-/// centre, and its area.
+/// centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stripe {
     /// In pixels, as all lengths here.
@@ -50,8 +52,6 @@ pub struct Stripe {
     pub half_width: f64,
     /// Of the line.
     pub normal: DVec2,
-    /// The area; less than that of the stripe at the ends of strands.
-    pub covered: f64,
 }
 
 /// Places in a pixel, from its centre, one in each row and in each column: 4, or 16 with one in each of 4 x 4 cells.
@@ -66,14 +66,17 @@ fn places(count: u32) -> impl Iterator<Item = DVec2> {
 }
 
 impl Stripe {
-    /// Shares of 4 or 16 places, so that their mean is the area: all of them smaller by one factor than their intervals across the line, or what they
-    /// leave free.
+    /// The opacity at each of 1, 4 or 16 places, with the mean `alpha`: all of them smaller by one factor than the covered share of their
+    /// intervals across the line, or what they leave free.
     ///
     /// # Panics
-    /// If there are to be others than 4 or 16.
-    pub fn shares(&self, count: u32) -> Vec<f64> {
-        assert!(matches!(count, 4 | 16), "{count} places");
-        let Self { distance, half_width, normal, covered } = *self;
+    /// If there are to be others than 1, 4 or 16.
+    pub fn parts(&self, count: u32, alpha: f64) -> Vec<f64> {
+        assert!(PLACES.contains(&count), "{count} places");
+        if count == 1 {
+            return vec![alpha];
+        }
+        let Self { distance, half_width, normal } = *self;
         let reach = 0.5 / f64::from(count) * normal.abs().element_sum();
         let share = |place: DVec2| {
             let across = distance + place.dot(normal);
@@ -82,9 +85,9 @@ impl Stripe {
         };
         let shares: Vec<f64> = places(count).map(share).collect();
         let mean = shares.iter().sum::<f64>() / f64::from(count);
-        let adjusted = |share: f64| match covered > mean {
-            true => 1.0 - (1.0 - share) * ((1.0 - covered) / (1.0 - mean).max(1e-12)),
-            false => share * (covered / mean.max(1e-12)),
+        let adjusted = |share: f64| match alpha > mean {
+            true => 1.0 - (1.0 - share) * ((1.0 - alpha) / (1.0 - mean).max(1e-12)),
+            false => share * (alpha / mean.max(1e-12)),
         };
         shares.into_iter().map(adjusted).collect()
     }

@@ -23,8 +23,6 @@ pub struct Fragment {
     pub alpha: f64,
     /// What it covers.
     pub stripe: Stripe,
-    /// Of what it covers.
-    pub opacity: f64,
 }
 
 /// The fragments of a section. `colors` holds colour and opacity of each strand vertex, in the order of the positions;

@@ -17,21 +17,6 @@ pub fn exact(view: &View, lights: &Lights, strands: &[Strands], scene: &dyn Fn([
     resolved(view, lights, strands, scene, usize::MAX)
 }
 
-/// The same where light passes so many places of a pixel for themselves, 4 or 16.
-///
-/// # Panics
-/// If there are others.
-pub fn exact_at_places(
-    view: &View,
-    lights: &Lights,
-    strands: &[Strands],
-    scene: &dyn Fn([u32; 2]) -> f32,
-    places: u32,
-) -> Vec<DVec4> {
-    let mut lists = lists(view, lights, strands, scene, 1);
-    lists.iter_mut().map(|list| resolve_at_places(list, places)).collect()
-}
-
 /// The picture with the `k` nearest fragments of a pixel in order.
 pub fn resolved(
     view: &View,
@@ -40,11 +25,26 @@ pub fn resolved(
     scene: &dyn Fn([u32; 2]) -> f32,
     k: usize,
 ) -> Vec<DVec4> {
-    let mut lists = lists(view, lights, strands, scene, 1);
-    lists.iter_mut().map(|list| resolve(list, k)).collect()
+    resolved_at_places(view, lights, strands, scene, k, 1)
 }
 
-/// The same with something else behind the `k` nearest.
+/// The same where light passes so many places of a pixel for themselves.
+///
+/// # Panics
+/// If there are others than 1, 4 or 16.
+pub fn resolved_at_places(
+    view: &View,
+    lights: &Lights,
+    strands: &[Strands],
+    scene: &dyn Fn([u32; 2]) -> f32,
+    k: usize,
+    places: u32,
+) -> Vec<DVec4> {
+    let mut lists = lists(view, lights, strands, scene, 1);
+    lists.iter_mut().map(|list| resolve_at_places(list, k, places)).collect()
+}
+
+/// The picture with the `k` nearest fragments of a pixel in order, and something else behind them.
 pub fn resolved_with_tail(
     view: &View,
     lights: &Lights,
@@ -57,7 +57,7 @@ pub fn resolved_with_tail(
     let sum: DVec3 = strands.iter().map(|of| xyz(&of.uniform.base) * segments(of)).sum();
     let unlit = sum / strands.iter().map(segments).sum::<f64>();
     let mut lists = lists(view, lights, strands, scene, 1);
-    lists.iter_mut().map(|list| resolve_with_tail(list, k, tail, unlit)).collect()
+    lists.iter_mut().map(|list| resolve_with_tail(list, k, 1, tail, unlit)).collect()
 }
 
 /// The picture from the `k` nearest fragments of each pixel, in order or as their mean, with the opacity of all.

@@ -142,8 +142,7 @@ impl Ribbon {
             nearness: mix(a.nearness, b.nearness),
             color,
             alpha: (covered * opacity).clamp(0.0, 1.0),
-            stripe: Stripe { distance: at.y, half_width, normal: self.normal, covered: covered.min(1.0) },
-            opacity,
+            stripe: Stripe { distance: at.y, half_width, normal: self.normal },
         })
     }
 }

@@ -10,15 +10,16 @@ use super::layout::points_grid;
 use super::memory::Memory;
 use crate::bound::Bound;
 use crate::output::Output;
+use crate::places::at_places;
 use crate::resolved::tile_count;
-use crate::shaders::{GROUP, compute, with_shared};
+use crate::shaders::{FRONT, GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
 const LIBRARY: &[Module] = &with_shared::<9, 25>([
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
-    ("front", include_str!("../../shaders/tiles/front.wgsl")),
+    FRONT,
     ("mean", include_str!("../../shaders/tiles/mean.wgsl")),
     ("quarter", include_str!("../../shaders/tiles/quarter.wgsl")),
     ("segments", include_str!("../../shaders/tiles/segments.wgsl")),
@@ -98,11 +99,7 @@ impl Kernels {
     /// At how many places of a pixel light passes for itself is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
     pub(crate) fn new(backend: &mut dyn Backend, output: Output, places: u32) -> Result<Self> {
         let few_turns = backend.caps().is_cpu;
-        let blended = output
-            .specialization()
-            .feature("places", places > 1)
-            .feature("few_turns", few_turns)
-            .constant("PLACES", places);
+        let blended = at_places(output.specialization().feature("few_turns", few_turns), places);
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));
