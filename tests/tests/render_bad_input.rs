@@ -241,7 +241,7 @@ fn in_one_pixel(count: u32) {
     };
     let look = material().with(|m| (m.opacity, m.tip_opacity, m.variation) = (0.002, 0.002, 1.0));
     let groom = Groom::new(&(0..count).map(strand).collect::<Vec<_>>(), look);
-    let more_places = [4, 16].map(|places| TilesDesc::default().places(places).into());
+    let more_places = [4, 16, 64].map(|places| TilesDesc::default().places(places).into());
     each(&[techniques(), more_places.into()].concat(), |name, screen, technique| {
         let picture = sound(name, screen, &groom);
         let counters = picture.counters;

@@ -101,7 +101,7 @@ fn what_the_frame_before_tells_of_units_changes_no_bit() {
         Groom::wavy(9000, 8, 2, faint()),
         Groom::wavy(1500, 16, 3, varied()),
     ];
-    for (few_tiles, places) in [(0, 1), (10_000, 1), (0, 4)] {
+    for (few_tiles, places) in [(0, 1), (10_000, 1), (0, 4), (10_000, 16), (0, 64)] {
         let technique = TilesDesc::default().few_tiles(few_tiles).places(places);
         let with = |setup: &mut Setup| setup.technique = technique.into();
         let alone = |groom| Some(screen(with)?.hair(&[groom]).bytes);

@@ -5,19 +5,19 @@ use tressfx_core::shader::Specialization;
 
 /// How many places a pixel may have.
 ///
-/// With one, what a strand covers of a pixel hides that share of all that is behind it. With 4, or 16, strands that run behind each other
-/// are seen beside each other.
-pub const PLACES: [u32; 3] = [1, 4, 16];
+/// With one, what a strand covers of a pixel hides that share of all that is behind it. With more, strands that run behind each other are
+/// seen beside each other.
+pub const PLACES: [u32; 4] = [1, 4, 16, 64];
 
 /// Whether there can be so many.
 pub(crate) fn check_places(label: Label, places: u32) -> Result<()> {
     if PLACES.contains(&places) {
         return Ok(());
     }
-    Err(Error::rule(label, format!("{places} places in a pixel, there can be 1, 4 or 16")))
+    Err(Error::rule(label, format!("{places} places in a pixel, there can be 1, 4, 16 or 64")))
 }
 
-/// A kernel for so many places.
-pub(crate) fn at_places(specialization: Specialization, places: u32) -> Specialization {
-    specialization.feature("places", places > 1).constant("PLACES", places)
+/// A kernel for so many places of a pixel, shared by so many lanes.
+pub(crate) fn at_places(specialization: Specialization, places: u32, lanes: u32) -> Specialization {
+    specialization.feature("places", places > 1).constant("PLACES", places).constant("LANES_OF_A_PIXEL", lanes)
 }

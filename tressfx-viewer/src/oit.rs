@@ -26,7 +26,7 @@ pub(crate) struct Oit {
     /// With `--oit shortcut`: blend the nearest fragments in order, instead of taking their mean
     #[arg(long)]
     oit_ordered: bool,
-    /// Without `--oit shortcut`: places in a pixel where light passes hair for itself, 1, 4 or 16. With more the picture is nearer to the truth,
+    /// Without `--oit shortcut`: places in a pixel where light passes hair for itself, 1, 4, 16 or 64. With more the picture is nearer to the truth,
     /// and takes longer; 1 by default
     #[arg(long, value_name = "N")]
     places: Option<u32>,
@@ -143,7 +143,7 @@ impl Oit {
     fn places(&self) -> Result<u32> {
         let places = self.places.unwrap_or(1);
         if !PLACES.contains(&places) {
-            bail!("--places {places}: it must be 1, 4 or 16");
+            bail!("--places {places}: it must be 1, 4, 16 or 64");
         }
         Ok(places)
     }

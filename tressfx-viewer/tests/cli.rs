@@ -100,7 +100,7 @@ fn bad_words_are_refused_by_name() {
     assert!(words(&["--oit", "auto", "--oit-k", "33"]).0.contains("--oit-k 33: it must be from 0 to 32"));
     assert!(words(&["--oit-ordered"]).0.contains("--oit shortcut"));
     assert!(words(&["--oit", "shortcut", "--places", "4"]).0.contains("--places belongs to --oit ppll, --oit tiles"));
-    assert!(words(&["--oit", "tiles", "--places", "2"]).0.contains("--places 2: it must be 1, 4 or 16"));
+    assert!(words(&["--oit", "tiles", "--places", "2"]).0.contains("--places 2: it must be 1, 4, 16 or 64"));
     assert!(fails(&folder, &["render", "builtin:wig", "--out", "x.png"]).0.contains("wig"));
     assert!(fails(&folder, &["render", "builtin:fur:10:4", "--out", "x.bmp"]).0.contains(".png"));
 }

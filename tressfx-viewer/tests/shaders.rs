@@ -44,6 +44,7 @@ const VARIANTS: [&[&str]; 20] = [
     &["--oit", "tiles", "--composite", "compute", "--for-cpu"],
     &["--oit", "tiles", "--places", "4", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles", "--places", "16", "--hair-output"],
+    &["--oit", "tiles", "--places", "64", "--hair-output", "--for-cpu"],
     &["--oit", "ppll", "--places", "4", "--fill", "raster"],
     &["--oit", "ppll", "--places", "16", "--oit-cap", "8", "--hair-output"],
 ];

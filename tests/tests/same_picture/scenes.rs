@@ -119,7 +119,7 @@ impl Setting {
     }
 
     /// Every technique, so set.
-    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 12] {
+    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 13] {
         let &Self { k, tail, cap, layers, .. } = self;
         let mut lists = PpllDesc::default().k(k).tail(tail).cap(cap);
         lists.max_node_bytes = self.nodes.unwrap_or(lists.max_node_bytes);
@@ -140,6 +140,7 @@ impl Setting {
             ("tiles", tiles.into()),
             ("tiles, four places", tiles.places(4).skips_hidden(true).into()),
             ("tiles, 16 places", tiles.places(16).into()),
+            ("tiles, 64 places", tiles.places(64).into()),
             ("auto", auto.dense(dense).tiles_on_cpu(true).into()),
         ]
     }

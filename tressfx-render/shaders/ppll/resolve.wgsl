@@ -21,7 +21,7 @@ import package::pixels::write_seen_pixel;
 @if(!hair_output)
 import package::pixels::write_pixel;
 @if(places)
-import package::places::{all_places, parts_of, unpack_stripe};
+import package::places::{all_places, parts_of, strength_of, unpack_stripe};
 @if(shaded)
 import package::sums::{mean_color, weighted};
 
@@ -74,7 +74,10 @@ fn tail_color(tail: Tail) -> vec3<f32> {
 fn over_node(front: Front, node: Content) -> Front {
     let alpha = f32(packed_alpha(node.yz)) / OPAQUE;
     @if(!places) { return over(front, packed_color(node.yz), alpha, 1u); }
-    @if(places) { return over(front, packed_color(node.yz), parts_of(unpack_stripe(node.w), alpha), 1u); }
+    @if(places) {
+        let stripe = unpack_stripe(node.w);
+        return over(front, packed_color(node.yz), parts_of(stripe, strength_of(stripe, alpha), 0u), 1u);
+    }
 }
 
 // A tail covers all places alike.

@@ -7,7 +7,7 @@ import package::ribbon::{Ribbon, along, slant_of};
 import package::screen::{scene_nearness, view};
 
 @if(places)
-import package::places::Stripe;
+import package::places::stripe_of;
 
 // Colour and opacity at the ends of a segment.
 struct Paint {
@@ -120,7 +120,7 @@ fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, 
     let nearness = mix(ribbon.nearness.x, ribbon.nearness.y, place);
     let alpha = u32(round(saturate(covered * opacity) * OPAQUE));
     @if(!places) { return Fragment(color, nearness, alpha); }
-    @if(places) { return Fragment(color, nearness, alpha, Stripe(at.y, half_width, line.normal)); }
+    @if(places) { return Fragment(color, nearness, alpha, stripe_of(at.y, half_width, line.normal)); }
 }
 
 // What the ribbon leaves in a pixel: nothing in one of another segment, and nothing behind the scene.

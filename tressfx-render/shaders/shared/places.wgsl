@@ -1,54 +1,98 @@
-// Places in a pixel, 4 or 16. Light passes hair at each of them for itself, so that hair which lies behind the edge of a strand is seen
+// Places in a pixel, 4, 16 or 64. Light passes hair at each of them for itself, so that hair which lies behind the edge of a strand is seen
 // beside it, and not through it.
 
-import package::constants::PLACES;
+import package::constants::{LANES_OF_A_PIXEL, PLACES};
 
 // They come by fours, from left to right.
 const FOURS: u32 = PLACES / 4u;
+// Those of a lane, where several share a pixel.
+const OWN_FOURS: u32 = FOURS / LANES_OF_A_PIXEL;
 
-// A number for each place.
-alias Shares = array<vec4<f32>, FOURS>;
+// A number for each place of a lane.
+alias Shares = array<vec4<f32>, OWN_FOURS>;
 
-// The same in words: 16 bits each for 4 places, 8 bits for 16.
-const WORDS: u32 = select(2u, 4u, PLACES == 16u);
-alias PackedShares = array<u32, WORDS>;
-
-// Where four places are from the centre of the pixel. No two places share a row or a column: each stands for a part of the pixel across a
-// line along either. Of 16, one is in each of 4 x 4 cells too.
-fn place_columns(four: u32) -> vec4<f32> {
-    return (vec4(0.5, 1.5, 2.5, 3.5) + f32(4u * four)) / f32(PLACES) - 0.5;
+// Where four places are from the centre of the pixel, in widths of a place. No two places share a row or a column: each stands for a part
+// of the pixel across a line along either. As each half of the columns, so each half of the rows of it has half of its places, and so on
+// (the net of Hammersley, turned about so that none is at a corner).
+fn columns_of(four: u32) -> vec4<f32> {
+    return vec4<f32>(4u * four + vec4(0u, 1u, 2u, 3u)) - 0.5 * f32(PLACES - 1u);
 }
 
-fn place_rows(four: u32) -> vec4<f32> {
-    // In cells the order of rows is that of the fours: 2, 0, 3, 1.
-    let within = select(0u, 2u - 2u * (four % 2u) + four / 2u, FOURS > 1u);
-    return (vec4(2.0, 0.0, 3.0, 1.0) * f32(FOURS) + f32(within) + 0.5) / f32(PLACES) - 0.5;
+fn rows_of(four: u32) -> vec4<f32> {
+    let reversed = reverseBits(4u * four + vec4(0u, 1u, 2u, 3u)) / (0x80000000u / (PLACES / 2u));
+    return vec4<f32>(reversed ^ vec4(0xaaaaaaaau & (PLACES - 1u))) - 0.5 * f32(PLACES - 1u);
 }
 
-// What a strand covers of a pixel: what is within `half_width` of a line with the unit normal `normal` that passes at `distance` from the
-// centre of the pixel.
+// What a strand covers of a pixel: what is between two lines, both with one normal. Lengths are such that the corners of a pixel are 0.5 from
+// its centre along the normal at most, and reach that.
 struct Stripe {
-    distance: f32,
-    half_width: f32,
-    normal: vec2<f32>,
+    edges: vec2<f32>,
+    // The normal's part to the right; its part down is what is left of 1.
+    right: f32,
 }
 
-// Each place's share of a stripe.
-fn shares_of(stripe: Stripe) -> Shares {
-    let reach = (0.5 / f32(PLACES)) * (abs(stripe.normal.x) + abs(stripe.normal.y));
-    let most = min(stripe.half_width / reach, 1.0);
-    var shares: Shares;
-    for (var i = 0u; i < FOURS; i++) {
-        let across = stripe.distance + (place_columns(i) * stripe.normal.x + place_rows(i) * stripe.normal.y);
-        shares[i] = clamp((stripe.half_width + reach - abs(across)) * (0.5 / reach), vec4(0.0), vec4(most));
+// What is within `half_width` of a line with the unit normal `normal` that passes at `distance` from the centre of the pixel.
+fn stripe_of(distance: f32, half_width: f32, normal: vec2<f32>) -> Stripe {
+    // Of the two normals of a line the one that leads down.
+    let turn = select(1.0, -1.0, normal.y < 0.0);
+    let scale = 1.0 / (abs(normal.x) + abs(normal.y));
+    let edges = (vec2(-half_width, half_width) - turn * distance) * scale;
+    return Stripe(clamp(edges, vec2(-0.5), vec2(0.5)), turn * normal.x * scale);
+}
+
+// A stripe in a word: 11 bits for either edge, 10 for the normal.
+const EDGE_BITS: u32 = 11u;
+const EDGE_STEPS: f32 = 2047.0;
+const RIGHT_STEPS: f32 = 1023.0;
+
+fn pack_stripe(stripe: Stripe) -> u32 {
+    let edges = vec2<u32>(round((stripe.edges + 0.5) * EDGE_STEPS));
+    let right = u32(round((stripe.right + 1.0) * (0.5 * RIGHT_STEPS)));
+    return edges.x | (edges.y << EDGE_BITS) | (right << (2u * EDGE_BITS));
+}
+
+fn unpack_stripe(packed: u32) -> Stripe {
+    let edges = vec2(extractBits(packed, 0u, EDGE_BITS), extractBits(packed, EDGE_BITS, EDGE_BITS));
+    let right = f32(packed >> (2u * EDGE_BITS)) * (2.0 / RIGHT_STEPS) - 1.0;
+    return Stripe(vec2<f32>(edges) * (1.0 / EDGE_STEPS) - 0.5, right);
+}
+
+// The share of each of four places that a stripe covers.
+fn shares_of(stripe: Stripe, four: u32) -> vec4<f32> {
+    let middle = (0.5 * f32(PLACES)) * (stripe.edges.x + stripe.edges.y);
+    let half_width = (0.5 * f32(PLACES)) * (stripe.edges.y - stripe.edges.x);
+    let across = columns_of(four) * stripe.right + rows_of(four) * (1.0 - abs(stripe.right)) - middle;
+    return clamp(half_width + 0.5 - abs(across), vec4(0.0), vec4(min(2.0 * half_width, 1.0)));
+}
+
+// What makes shares opacities with the mean `alpha`. Up to 1 it is a factor of shares; above, 2 less it is a factor of what they leave free.
+fn strength_of(stripe: Stripe, alpha: f32) -> f32 {
+    var sum = 0.0;
+    for (var four = 0u; four < FOURS; four++) {
+        sum += dot(shares_of(stripe, four), vec4(1.0));
     }
-    return shares;
+    let mean = sum / f32(PLACES);
+    if alpha > mean {
+        return 2.0 - (1.0 - alpha) / max(1.0 - mean, 1e-6);
+    }
+    return alpha / max(mean, 1e-6);
+}
+
+// The opacity of a strand at each place of a lane, whose first four is `first`.
+fn parts_of(stripe: Stripe, strength: f32, first: u32) -> Shares {
+    let factor = min(strength, 2.0 - strength);
+    let least = max(strength - 1.0, 0.0);
+    var parts: Shares;
+    for (var i = 0u; i < OWN_FOURS; i++) {
+        parts[i] = saturate(shares_of(stripe, first + i) * factor + least);
+    }
+    return parts;
 }
 
 // The same for all places.
 fn all_places(share: f32) -> Shares {
     var shares: Shares;
-    for (var i = 0u; i < FOURS; i++) {
+    for (var i = 0u; i < OWN_FOURS; i++) {
         shares[i] = vec4(share);
     }
     return shares;
@@ -56,30 +100,17 @@ fn all_places(share: f32) -> Shares {
 
 fn mean_of(shares: Shares) -> f32 {
     var sum = 0.0;
-    for (var i = 0u; i < FOURS; i++) {
-        sum += dot(shares[i], vec4(1.0 / f32(PLACES)));
+    for (var i = 0u; i < OWN_FOURS; i++) {
+        sum += dot(shares[i], vec4(0.25 / f32(OWN_FOURS)));
     }
     return sum;
-}
-
-// The opacity of a strand at each place, with the mean `alpha`: all shares smaller by one factor, or what they leave free.
-fn parts_of(stripe: Stripe, alpha: f32) -> Shares {
-    let shares = shares_of(stripe);
-    let mean = mean_of(shares);
-    let grows = alpha > mean;
-    let factor = select(alpha, 1.0 - alpha, grows) / max(select(mean, 1.0 - mean, grows), 1e-6);
-    var parts: Shares;
-    for (var i = 0u; i < FOURS; i++) {
-        parts[i] = saturate(shares[i] * factor + select(0.0, 1.0 - factor, grows));
-    }
-    return parts;
 }
 
 // The mean of what is stopped of the light that comes to each place.
 fn stopped(transmittance: Shares, parts: Shares) -> f32 {
     var sum = 0.0;
-    for (var i = 0u; i < FOURS; i++) {
-        sum += dot(transmittance[i] * parts[i], vec4(1.0 / f32(PLACES)));
+    for (var i = 0u; i < OWN_FOURS; i++) {
+        sum += dot(transmittance[i] * parts[i], vec4(0.25 / f32(OWN_FOURS)));
     }
     return sum;
 }
@@ -87,79 +118,8 @@ fn stopped(transmittance: Shares, parts: Shares) -> f32 {
 // What is left of the light that comes to each place.
 fn passed(transmittance: Shares, parts: Shares) -> Shares {
     var left: Shares;
-    for (var i = 0u; i < FOURS; i++) {
+    for (var i = 0u; i < OWN_FOURS; i++) {
         left[i] = transmittance[i] * (1.0 - parts[i]);
     }
     return left;
-}
-
-// 8 bits are a share of the largest: `unpack_parts` knows the mean.
-fn pack_parts(parts: Shares) -> PackedShares {
-    var packed: PackedShares;
-    if PLACES == 4u {
-        packed[0] = pack2x16unorm(parts[0].xy);
-        packed[1] = pack2x16unorm(parts[0].zw);
-        return packed;
-    }
-    var largest = vec4(1e-20);
-    for (var i = 0u; i < FOURS; i++) {
-        largest = max(largest, parts[i]);
-    }
-    let scale = 1.0 / max(max(largest.x, largest.y), max(largest.z, largest.w));
-    for (var i = 0u; i < FOURS; i++) {
-        packed[i] = pack4x8unorm(parts[i] * scale);
-    }
-    return packed;
-}
-
-fn unpack_parts(packed: PackedShares, mean: f32) -> Shares {
-    var parts: Shares;
-    if PLACES == 4u {
-        parts[0] = vec4(unpack2x16unorm(packed[0]), unpack2x16unorm(packed[1]));
-        return parts;
-    }
-    for (var i = 0u; i < FOURS; i++) {
-        parts[i] = unpack4x8unorm(packed[i]);
-    }
-    let scale = mean / max(mean_of(parts), 1e-6);
-    for (var i = 0u; i < FOURS; i++) {
-        parts[i] = min(parts[i] * scale, vec4(1.0));
-    }
-    return parts;
-}
-
-// Whether one comes first in an order that means nothing but is the same in every run; `if_same` where there is no difference.
-fn is_less_packed(a: PackedShares, b: PackedShares, if_same: bool) -> bool {
-    for (var i = 0u; i < WORDS; i++) {
-        if a[i] != b[i] {
-            return a[i] < b[i];
-        }
-    }
-    return if_same;
-}
-
-// A stripe in a word: both edges, 11 bits each, and 10 bits of the normal. It moves no edge within the pixel by more than 0.0015 pixels.
-
-// Edges farther from the centre than any place is are as good as at this distance.
-const FARTHEST: f32 = 0.75;
-const EDGE_BITS: u32 = 11u;
-const EDGE_STEPS: f32 = 2047.0;
-const NORMAL_BITS: u32 = 10u;
-const NORMAL_STEPS: f32 = 1023.0;
-
-fn pack_stripe(stripe: Stripe) -> u32 {
-    // Of the two normals of a line the one that leads down.
-    let turn = select(1.0, -1.0, stripe.normal.y < 0.0);
-    let normal = turn * stripe.normal;
-    let edges = clamp(vec2(-1.0, 1.0) * stripe.half_width - turn * stripe.distance, vec2(-FARTHEST), vec2(FARTHEST));
-    let steps = vec2<u32>(round((edges + FARTHEST) * (0.5 * EDGE_STEPS / FARTHEST)));
-    let right = normal.x / max(abs(normal.x) + normal.y, 1e-6);
-    return steps.x | (steps.y << EDGE_BITS) | (u32(round((right + 1.0) * (0.5 * NORMAL_STEPS))) << (2u * EDGE_BITS));
-}
-
-fn unpack_stripe(packed: u32) -> Stripe {
-    let steps = vec2<f32>(vec2(extractBits(packed, 0u, EDGE_BITS), extractBits(packed, EDGE_BITS, EDGE_BITS)));
-    let edges = steps * (2.0 * FARTHEST / EDGE_STEPS) - FARTHEST;
-    let right = f32(packed >> (2u * EDGE_BITS)) * (2.0 / NORMAL_STEPS) - 1.0;
-    return Stripe(-0.5 * (edges.x + edges.y), 0.5 * (edges.y - edges.x), normalize(vec2(right, 1.0 - abs(right))));
 }

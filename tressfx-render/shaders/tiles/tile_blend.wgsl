@@ -6,7 +6,6 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
-import package::constants::PLACES;
 import package::cuts::{pack_cuts, recall_cuts};
 import package::entries::{
     Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
@@ -14,6 +13,7 @@ import package::entries::{
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
+import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
 import package::line::{Line, fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
@@ -29,6 +29,8 @@ import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds
 
 @if(places)
 import package::entries::parts_at;
+@if(places)
+import package::joined::first_four;
 @if(few_turns)
 import package::turns::{may_go_on, note_chunk, note_unit, turns};
 @if(few_turns)
@@ -54,8 +56,8 @@ import package::mean::largest_alpha;
 @group(0) @binding(10) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const NO_TILE: u32 = 0xffffffffu;
-// References that a lane looks at before the group draws those that touch its quarter; the opacities of 16 places leave less room for them.
-const LOOKS: u32 = select(3u, 2u, PLACES == 16u);
+// References that a lane looks at before the group draws those that touch its quarter.
+const LOOKS: u32 = 3u;
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
@@ -280,15 +282,15 @@ fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
     }
 }
 
-// The sorted fragments of a pixel behind what lies before them.
-fn blend_sorted(front: Front, pixel: u32) -> Front {
+// The sorted fragments of the pixel of a lane behind what lies before them.
+fn blend_sorted(front: Front, lane: u32) -> Front {
     var blended = front;
-    let places = places_of(pixel);
+    let places = places_of(pixel_of_lane(lane));
     for (var i = places.x; i < places.y && passes(blended) >= tiles.closed_below; i++) {
         let color = color_at(i);
         let alpha = packed_alpha(color);
         @if(!places) { blended = over(blended, packed_color(color), f32(alpha) / OPAQUE, u32(alpha > 0u)); }
-        @if(places) { blended = over(blended, packed_color(color), parts_at(i, f32(alpha) / OPAQUE), u32(alpha > 0u)); }
+        @if(places) { blended = over(blended, packed_color(color), parts_at(i, first_four(lane)), u32(alpha > 0u)); }
         @if(hair_output) {
             // What comes later is farther: only the first one counts, and the first one that is not faint.
             if alpha > 0u && (seen == 0u || (seen < NOT_FAINT && alpha >= FAINT)) {
@@ -335,6 +337,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
     workgroupBarrier();
     if lane < PIXELS {
         empty_mean(lane);
+        none_closed(lane);
     }
     if is_own(own, corner, lane) {
         atomicOr(&open, 1u << lane);
@@ -344,7 +347,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
     }
 }
 
-// Blends all units. Returns what the pixel of the lane has.
+// Blends all units. Returns what the places of the lane have.
 fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
     var front = nothing_yet();
     loop {
@@ -368,19 +371,22 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
             @if(few_turns) { note_unit(count > 0u); }
             plan = next_unit(unit, found, vec2(atomicLoad(&ends[0]), atomicLoad(&ends[1])));
         }
-        if lane < PIXELS && is_blended {
+        if blends(lane) && is_blended && passes(front) >= tiles.closed_below {
+            let pixel = pixel_of_lane(lane);
             if unit.is_mean == 1u {
-                front = blend_mean(front, lane);
-                @if(hair_output) { see_mean(unit, lane); }
-                empty_mean(lane);
+                front = blend_mean(front, pixel);
+                @if(hair_output) { see_mean(unit, pixel); }
             } else {
                 front = blend_sorted(front, lane);
             }
-            if passes(front) < tiles.closed_below {
-                atomicAnd(&open, ~(1u << lane));
+            if passes(front) < tiles.closed_below && is_last_to_close(pixel) {
+                atomicAnd(&open, ~(1u << pixel));
             }
         }
         workgroupBarrier();
+        if unit.is_mean == 1u && lane < PIXELS {
+            empty_mean(lane);
+        }
         if lane == 0u && atomicLoad(&open) == 0u {
             plan.first = SLICES;
             seen_to = slice_distance(begin, unit.end);
@@ -390,15 +396,21 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
     return front;
 }
 
+// What the pixel of the lane has: of the first lane of each.
+fn joined_of(front: Front, lane: u32) -> Joined {
+    @if(hair_output) { return join(front, seen, lane); }
+    @if(!hair_output) { return join(front, 0u, lane); }
+}
+
 fn blend_parts(own: Job, lane: u32) {
     let tile = vec2(own.tile % tile_columns(), own.tile / tile_columns());
     let corner = TILE * tile + QUARTER * vec2(own.quarter % 2u, own.quarter / 2u);
     prepare(own, corner, lane);
-    let front = blend_units(own, corner, lane);
+    let blended = joined_of(blend_units(own, corner, lane), lane);
     let is_done = workgroupUniformLoad(&seen_to) >= 0.0 || !is_cut(own.info);
     let pixel = pixel_at(corner, lane);
     if is_done && is_own(own, corner, lane) {
-        let color = vec4(front.color, 1.0 - passes(front));
+        let color = vec4(blended.color, 1.0 - blended.passes);
         let place = resolved_index(own.info.slot - 1u, pixel);
         @if(!hair_output) {
             resolved[place] = vec2(pack2x16float(color.rg), pack2x16float(color.ba));
@@ -406,10 +418,10 @@ fn blend_parts(own: Job, lane: u32) {
         @if(hair_output) {
             resolved[3u * place] = pack2x16float(color.rg);
             resolved[3u * place + 1u] = pack2x16float(color.ba);
-            resolved[3u * place + 2u] = seen;
+            resolved[3u * place + 2u] = blended.seen;
         }
         atomicAdd(&hairy_pixels, u32(color.a > 0.0));
-        atomicAdd(&blended_fragments, front.fragments);
+        atomicAdd(&blended_fragments, blended.fragments);
     }
     workgroupBarrier();
     if is_done && lane == 0u {

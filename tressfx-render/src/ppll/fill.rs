@@ -16,6 +16,6 @@ const SHADERS: Shaders = Shaders {
 
 /// The pass; where lists are bounded, only the nearest fragments of a pixel have nodes.
 pub(crate) fn pass(backend: &mut dyn Backend, desc: &PpllDesc, is_bounded: bool, output: Output) -> Result<Segments> {
-    let specialization = at_places(output.specialization().feature("bounded", is_bounded), desc.places);
+    let specialization = at_places(output.specialization().feature("bounded", is_bounded), desc.places, 1);
     Segments::new(backend, desc.fill, &SHADERS, &specialization, output.color)
 }

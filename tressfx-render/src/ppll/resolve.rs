@@ -33,7 +33,7 @@ pub(crate) struct Variant {
 
 impl Variant {
     fn specialization(&self) -> Specialization {
-        at_places(self.output.specialization(), self.places)
+        at_places(self.output.specialization(), self.places, 1)
             .feature("shaded", self.tail == Tail::Shaded)
             .feature("unshaded", self.tail == Tail::Unshaded)
             .feature("bounded", self.bounded)

@@ -54,23 +54,28 @@ pub struct Stripe {
     pub normal: DVec2,
 }
 
-/// Places in a pixel, from its centre, one in each row and in each column: 4, or 16 with one in each of 4 x 4 cells.
+/// Places in a pixel, from its centre: 4, 16 or 64, one in each row and in each column, one in each of 4 x 4 or 8 x 8 cells, and so on.
+/// The rows are those of the four halves of all rows, quarters and so on in turns, the lower half first.
 fn places(count: u32) -> impl Iterator<Item = DVec2> {
-    const ORDER: [u32; 4] = [2, 0, 3, 1];
-    let row = move |column: u32| match count {
-        4 => ORDER[column as usize],
-        _ => 4 * ORDER[column as usize % 4] + ORDER[column as usize / 4],
+    let row = move |column: u32| {
+        // From halves of the columns come the smallest parts of the rows: every second time the later part comes first.
+        let (mut row, mut rest, mut part, mut turned) = (0, column, count / 2, true);
+        while part > 0 {
+            row += if (rest % 2 == 1) != turned { part } else { 0 };
+            (rest, part, turned) = (rest / 2, part / 2, !turned);
+        }
+        row
     };
     let at = move |number: u32| (f64::from(number) + 0.5) / f64::from(count) - 0.5;
     (0..count).map(move |column| DVec2::new(at(column), at(row(column))))
 }
 
 impl Stripe {
-    /// The opacity at each of 1, 4 or 16 places, with the mean `alpha`: all of them smaller by one factor than the covered share of their
+    /// The opacity at each of 1, 4, 16 or 64 places, with the mean `alpha`: all of them smaller by one factor than the covered share of their
     /// intervals across the line, or what they leave free.
     ///
     /// # Panics
-    /// If there are to be others than 1, 4 or 16.
+    /// If there are to be others.
     pub fn parts(&self, count: u32, alpha: f64) -> Vec<f64> {
         assert!(PLACES.contains(&count), "{count} places");
         if count == 1 {

@@ -31,7 +31,7 @@ pub fn resolved(
 /// The same where light passes so many places of a pixel for themselves.
 ///
 /// # Panics
-/// If there are others than 1, 4 or 16.
+/// If there are others than 1, 4, 16 or 64.
 pub fn resolved_at_places(
     view: &View,
     lights: &Lights,

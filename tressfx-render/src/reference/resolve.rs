@@ -14,7 +14,7 @@ pub fn resolve(fragments: &mut [Fragment], k: usize) -> DVec4 {
 /// The same where light passes so many places of the pixel for themselves.
 ///
 /// # Panics
-/// If there are others than 1, 4 or 16.
+/// If there are others than 1, 4, 16 or 64.
 pub fn resolve_at_places(fragments: &mut [Fragment], k: usize, places: u32) -> DVec4 {
     resolve_with_tail(fragments, k, places, Tail::Shaded, DVec3::ZERO)
 }
@@ -22,7 +22,7 @@ pub fn resolve_at_places(fragments: &mut [Fragment], k: usize, places: u32) -> D
 /// The same with something else behind the `k` nearest, which covers all places alike; `unlit` is the colour of a tail that is not shaded.
 ///
 /// # Panics
-/// If there are others than 1, 4 or 16 places.
+/// If there are others than 1, 4, 16 or 64 places.
 pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, places: u32, tail: Tail, unlit: DVec3) -> DVec4 {
     fragments.sort_by(|a, b| b.nearness.total_cmp(&a.nearness));
     let (nearest, rest) = fragments.split_at(k.min(fragments.len()));

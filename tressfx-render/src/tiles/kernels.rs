@@ -16,10 +16,11 @@ use crate::shaders::{FRONT, GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<9, 25>([
+const LIBRARY: &[Module] = &with_shared::<10, 26>([
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     FRONT,
+    ("joined", include_str!("../../shaders/tiles/joined.wgsl")),
     ("mean", include_str!("../../shaders/tiles/mean.wgsl")),
     ("quarter", include_str!("../../shaders/tiles/quarter.wgsl")),
     ("segments", include_str!("../../shaders/tiles/segments.wgsl")),
@@ -27,6 +28,12 @@ const LIBRARY: &[Module] = &with_shared::<9, 25>([
     ("turns", include_str!("../../shaders/tiles/turns.wgsl")),
     ("unit", include_str!("../../shaders/tiles/unit.wgsl")),
 ]);
+
+/// Places that a lane of `tile_blend` blends, unless there are too many.
+const PLACES_OF_A_LANE: u32 = 4;
+
+/// Lanes of a pixel at most: so many for each of 16 pixels are not more than the group has.
+const MOST_LANES_OF_A_PIXEL: u32 = 8;
 
 /// Lanes that share a tile: a row of pixels each in `tile_depth`, a part of the slices in `tile_alloc`.
 const LANES_OF_A_TILE: u32 = 8;
@@ -99,7 +106,8 @@ impl Kernels {
     /// At how many places of a pixel light passes for itself is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
     pub(crate) fn new(backend: &mut dyn Backend, output: Output, places: u32) -> Result<Self> {
         let few_turns = backend.caps().is_cpu;
-        let blended = at_places(output.specialization().feature("few_turns", few_turns), places);
+        let blended = output.specialization().feature("few_turns", few_turns);
+        let blended = at_places(blended, places, (places / PLACES_OF_A_LANE).clamp(1, MOST_LANES_OF_A_PIXEL));
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));
