@@ -19,5 +19,9 @@ pub(crate) fn check_places(label: Label, places: u32) -> Result<()> {
 
 /// A kernel for so many places of a pixel, shared by so many lanes.
 pub(crate) fn at_places(specialization: Specialization, places: u32, lanes: u32) -> Specialization {
-    specialization.feature("places", places > 1).constant("PLACES", places).constant("LANES_OF_A_PIXEL", lanes)
+    let specialization = specialization.feature("places", places > 1);
+    if places == 1 {
+        return specialization;
+    }
+    specialization.constant("PLACES", places).constant("LANES_OF_A_PIXEL", lanes)
 }

@@ -23,7 +23,7 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volu
 const COPIES: &str = "[material]\ncopies = 3\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 20] = [
+const VARIANTS: [&[&str]; 23] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml", "--fields"],
