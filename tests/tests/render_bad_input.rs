@@ -315,7 +315,10 @@ fn no_fragment_in_order_and_more_than_there_may_be() {
     let (lists, mean) = (PpllDesc::default(), ShortCutDesc::default());
     let none: Vec<Technique> = [Fill::Compute, RASTER]
         .into_iter()
-        .flat_map(|fill| [Tail::Shaded, Tail::Unshaded, Tail::None].map(|tail| lists.k(0).fill(fill).tail(tail).into()))
+        .flat_map(|fill| {
+            [Tail::Shaded, Tail::Weighted, Tail::Unshaded, Tail::None]
+                .map(|tail| lists.k(0).fill(fill).tail(tail).into())
+        })
         .collect();
     let Some(screens) = screens() else { return };
     for (backend, mut screen) in ["wgpu", "Vulkan"].into_iter().zip(screens) {

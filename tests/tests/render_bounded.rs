@@ -28,9 +28,8 @@ fn alpha_error(screen: &Screen, groom: &Groom, picture: &Picture) -> f64 {
 fn a_cap_changes_memory_and_the_picture_only_below_k() {
     let groom = Groom::wavy(1500, 16, 3, material());
     for fill in [Fill::Compute, Fill::Raster] {
-        for (k, tail) in
-            [(8, Tail::Shaded), (8, Tail::Unshaded), (3, Tail::None), (32, Tail::Shaded), (0, Tail::Shaded)]
-        {
+        let tails = [(8, Tail::Shaded), (8, Tail::Weighted), (8, Tail::Unshaded), (3, Tail::None), (32, Tail::Shaded)];
+        for (k, tail) in tails.into_iter().chain([(0, Tail::Shaded), (0, Tail::Weighted)]) {
             let desc = PpllDesc::default().k(k).tail(tail).fill(fill);
             for cap in [0, 1, 3, 8, 40] {
                 let Some(mut all) = screen(lists(desc.k(k.min(cap)))) else { return };

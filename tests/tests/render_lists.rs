@@ -9,7 +9,7 @@ use tressfx_render::{Fill, K_RANGE, PpllDesc, ShortCutDesc, Tail, Technique, Til
 use support::hair::material;
 use support::screen;
 
-const TAILS: [Tail; 3] = [Tail::Shaded, Tail::Unshaded, Tail::None];
+const TAILS: [Tail; 4] = [Tail::Shaded, Tail::Weighted, Tail::Unshaded, Tail::None];
 
 fn in_f64(screen: &Screen, grooms: &[&Groom], k: u32, tail: Tail) -> Vec<DVec4> {
     let far = screen.view.depth().far();
@@ -40,6 +40,21 @@ fn every_k_and_every_tail_is_as_in_f64() {
 }
 
 #[test]
+fn weighted_tails_of_dense_hair_are_nearer_to_exact_order() {
+    let groom = Groom::wavy(6000, 16, 3, material());
+    let Some(mut screen) = screen(|_| ()) else { return };
+    let exact = screen.exact(&[&groom]);
+    for k in [3, 8] {
+        let [shaded, weighted] = [Tail::Shaded, Tail::Weighted].map(|tail| {
+            retune(&mut screen, k, tail);
+            screen.hair(&[&groom]).difference(&exact).psnr
+        });
+        eprintln!("k = {k}: {shaded:.1} dB, weighted {weighted:.1} dB");
+        assert!(weighted > shaded + 2.0, "k = {k}: {shaded:.1} dB, weighted {weighted:.1} dB");
+    }
+}
+
+#[test]
 fn tails_differ_and_opacity_does_not() {
     let groom = Groom::wavy(1500, 16, 3, material());
     let Some(mut screen) = screen(|_| ()) else { return };
@@ -48,9 +63,11 @@ fn tails_differ_and_opacity_does_not() {
         retune(&mut screen, 2, tail);
         pictures.push(screen.hair(&[&groom]).pixels());
     }
-    let [shaded, unshaded, none] = &pictures[..] else { unreachable!() };
-    assert!(shaded != unshaded && unshaded != none);
-    assert!(shaded.iter().zip(unshaded).all(|(a, b)| a.w == b.w), "the opacity is that of all");
+    let [shaded, weighted, unshaded, none] = &pictures[..] else { unreachable!() };
+    assert!(shaded != unshaded && shaded != weighted && unshaded != none);
+    for other in [weighted, unshaded] {
+        assert!(shaded.iter().zip(other).all(|(a, b)| a.w == b.w), "the opacity is that of all");
+    }
     assert!(shaded.iter().zip(none).all(|(a, b)| a.w >= b.w) && shaded.iter().zip(none).any(|(a, b)| a.w > b.w + 0.1));
     retune(&mut screen, 0, Tail::None);
     let empty = screen.hair(&[&groom]);

@@ -12,7 +12,7 @@ pub(crate) struct Family {
 }
 
 /// All families, in the order of the tables.
-pub(crate) const FAMILIES: [Family; 9] = [
+pub(crate) const FAMILIES: [Family; 10] = [
     Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
     Family {
         name: "ppll-raster",
@@ -20,8 +20,18 @@ pub(crate) const FAMILIES: [Family; 9] = [
         ks: &[0, 1, 2, 4, 8, 16, 32],
         quick_ks: &[8],
     },
-    Family { name: "ppll-4-places", words: &["--oit", "ppll", "--places", "4"], ks: &[8, 16], quick_ks: &[8] },
-    Family { name: "ppll-16-places", words: &["--oit", "ppll", "--places", "16"], ks: &[8], quick_ks: &[8] },
+    Family {
+        name: "ppll-weighted",
+        words: &["--oit", "ppll", "--oit-tail", "weighted"],
+        ks: &[4, 8, 16],
+        quick_ks: &[8],
+    },
+    Family {
+        name: "ppll-weighted-4-places",
+        words: &["--oit", "ppll", "--oit-tail", "weighted", "--places", "4"],
+        ks: &[8],
+        quick_ks: &[8],
+    },
     Family { name: "shortcut-mean", words: &["--oit", "shortcut"], ks: &[1, 2, 3, 4, 8], quick_ks: &[1, 3, 8] },
     Family {
         name: "shortcut-ordered",
@@ -32,6 +42,7 @@ pub(crate) const FAMILIES: [Family; 9] = [
     Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
     Family { name: "tiles-4-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
     Family { name: "tiles-16-places", words: &["--oit", "tiles", "--places", "16"], ks: &[], quick_ks: &[] },
+    Family { name: "tiles-64-places", words: &["--oit", "tiles", "--places", "64"], ks: &[], quick_ks: &[] },
 ];
 
 /// A family with a setting.
@@ -99,7 +110,7 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 30);
+        assert_eq!(methods(Extent::Full).len(), 32);
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
         assert_eq!(family_of("tiles"), Some((6, "")));
     }

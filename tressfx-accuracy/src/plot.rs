@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (940, 480);
 /// Where the legend begins: beside the plot, since points may lie anywhere in it.
 const LEGEND: i32 = 690;
 
-/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey is added).
+/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey and a brown are added).
 const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(0, 114, 178),
     RGBColor(86, 180, 233),
@@ -25,6 +25,7 @@ const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(0, 0, 0),
+    RGBColor(140, 70, 20),
 ];
 
 /// Of the line along the best ones.

@@ -43,13 +43,14 @@ const LABEL: Label = "hair.render.ppll";
 const SPARE: f64 = 1.1;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<6, 22>([
+const LIBRARY: &[Module] = &with_shared::<7, 23>([
     FRONT,
     PIXELS,
     ("kept", include_str!("../shaders/ppll/kept.wgsl")),
     ("node", include_str!("../shaders/ppll/node.wgsl")),
     ("rest", include_str!("../shaders/ppll/rest.wgsl")),
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
+    ("weight", include_str!("../shaders/ppll/weight.wgsl")),
 ]);
 
 /// Lists of fragments.
@@ -408,7 +409,7 @@ impl TechniqueInstance for Ppll {
         self.usage.begin_frame();
         self.views = views.max(1);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.upload(list, groups, [self.kept, self.desc.asked()], tail::unlit(draws));
+        self.pool.upload(list, groups, [self.kept, self.desc.asked()], self.desc.tail, tail::unlit(draws));
     }
 
     fn hairy(&self) -> &Resolved {

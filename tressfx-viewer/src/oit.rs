@@ -68,6 +68,8 @@ impl FillName {
 enum TailName {
     /// Their mean colour, and their opacity
     Shaded,
+    /// The same, with the colours weighted by what is seen of them about: nearer to the truth where hair is dense
+    Weighted,
     /// The colour of hair without light, and their opacity
     Unshaded,
     /// Nothing
@@ -78,6 +80,7 @@ impl TailName {
     fn tail(self) -> Tail {
         match self {
             Self::Shaded => Tail::Shaded,
+            Self::Weighted => Tail::Weighted,
             Self::Unshaded => Tail::Unshaded,
             Self::None => Tail::None,
         }

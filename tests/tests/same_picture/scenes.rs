@@ -103,6 +103,8 @@ const NONE: Setting = Setting { k: 0, layers: 1, ..USUAL };
 const ONE: Setting = Setting { k: 1, layers: 2, ..USUAL };
 const MANY: Setting = Setting { k: 32, layers: 8, ..USUAL };
 const UNSHADED: Setting = Setting { k: 3, tail: Tail::Unshaded, layers: 4, ..USUAL };
+const WEIGHTED: Setting = Setting { tail: Tail::Weighted, ..USUAL };
+const WEIGHTED_CAPPED: Setting = Setting { k: 5, tail: Tail::Weighted, cap: Some(5), ..USUAL };
 const NO_TAIL: Setting = Setting { k: 2, tail: Tail::None, layers: 5, ..USUAL };
 const CAPPED: Setting = Setting { k: 4, cap: Some(2), ..USUAL };
 const CAPPED_AT_NONE: Setting = Setting { cap: Some(0), ..USUAL };
@@ -268,6 +270,8 @@ pub(crate) const SCENES: &[Scene] = &[
     scene("dense, nothing sorted", THICK, (Eye::Middle, Look::Default, Solid::Roof), [128, 96], NONE),
     scene("one sorted", LONG, (Eye::Middle, Look::Varied, Solid::Nothing), [128, 96], ONE),
     scene("many sorted", THICK, (Eye::Middle, Look::Faint, Solid::Nothing), [96, 64], MANY),
+    scene("a weighted tail", THICK, (Eye::Middle, Look::Default, Solid::Nothing), [128, 96], WEIGHTED),
+    scene("a weighted tail without nodes", THICK, (Eye::Middle, Look::Default, Solid::Nothing), [96, 96], WEIGHTED_CAPPED),
     scene("a tail without light", THICK, (Eye::Middle, Look::Default, Solid::Nothing), [128, 96], UNSHADED),
     scene("no tail", FUR, (Eye::Middle, Look::Faint, Solid::Nothing), [128, 96], NO_TAIL),
     scene("capped", THICK, (Eye::Middle, Look::Varied, Solid::Nothing), [128, 96], CAPPED),

@@ -8,7 +8,7 @@ import package::sink::{counters, link, pool};
 @if(bounded)
 import package::rest::add_to_rest;
 @if(bounded)
-import package::sink::{count_behind, is_kept};
+import package::sink::{count_behind, is_kept, rest_weight};
 
 @vertex
 fn segment_corner(@builtin(vertex_index) vertex: u32) -> Corner {
@@ -44,7 +44,7 @@ fn append(index: u32, fragment: Fragment) {
     } else {
         count_behind(1u);
     }
-    add_to_rest(index, fragment);
+    add_to_rest(index, fragment, rest_weight(index, fragment));
 }
 
 @fragment

@@ -9,6 +9,11 @@ fn kept_key(nearness: f32) -> u32 {
     return bitcast<u32>(nearness) + 1u;
 }
 
+// The nearness of a key that is not 0.
+fn kept_nearness(key: u32) -> f32 {
+    return bitcast<f32>(key - 1u);
+}
+
 // Whether a fragment is one of the nearest, of which the last has the key `last`.
 fn is_nearest(key: u32, last: u32) -> bool {
     return key + ROUNDING >= last;

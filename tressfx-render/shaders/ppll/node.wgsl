@@ -36,7 +36,8 @@ struct PoolUniform {
     // Where not all fragments have a node: how many of a pixel have, and how many were to have one.
     kept: u32,
     asked: u32,
-    unused_0: u32,
+    // 1 where the colours of a tail are weighted by what is seen of them.
+    weighs: u32,
     unused_1: u32,
     unused_2: u32,
     // The colour of a tail that is not shaded.

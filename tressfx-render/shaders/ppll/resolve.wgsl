@@ -14,8 +14,10 @@ import package::rest::{SUMS, UNIT};
 import package::sums::{FULL, optical_depth, transmittance_of};
 import package::tile::tile_of;
 
+@if(hair_output || weighted)
+import package::fragment::nearness_of;
 @if(hair_output)
-import package::fragment::{nearness_of, seen_key};
+import package::fragment::seen_key;
 @if(hair_output)
 import package::pixels::write_seen_pixel;
 @if(!hair_output)
@@ -24,6 +26,8 @@ import package::pixels::write_pixel;
 import package::places::{all_places, parts_of, strength_of, unpack_stripe};
 @if(shaded)
 import package::sums::{mean_color, weighted};
+@if(weighted)
+import package::weight::{Nearest, weight_of};
 
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
@@ -42,6 +46,7 @@ const FAR: Content = vec4(0xffffffffu, 0u, 0u, 0u);
 struct Tail {
     // Sum of -log2(1 - alpha).
     optical: u32,
+    // Sum of the weights of the colours.
     weight: u32,
     color: vec3<u32>,
 }
@@ -56,13 +61,51 @@ fn is_before(a: Content, b: Content) -> bool {
     return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && (a.z < b.z || (a.z == b.z && a.w < b.w)))));
 }
 
-fn add(tail: ptr<function, Tail>, node: Content) {
-    let alpha = packed_alpha(node.yz);
-    (*tail).optical = min((*tail).optical + optical_depth(alpha), FULL);
-    (*tail).weight = min((*tail).weight + alpha, FULL);
+fn add_opacity(tail: ptr<function, Tail>, node: Content) {
+    (*tail).optical = min((*tail).optical + optical_depth(packed_alpha(node.yz)), FULL);
+}
+
+fn add_color(tail: ptr<function, Tail>, node: Content, weight: u32) {
+    (*tail).weight = min((*tail).weight + weight, FULL);
     @if(shaded) {
-        (*tail).color = min((*tail).color + weighted(packed_color(node.yz), alpha, UNIT), vec3(FULL));
+        (*tail).color = min((*tail).color + weighted(packed_color(node.yz), weight, UNIT), vec3(FULL));
     }
+}
+
+fn add(tail: ptr<function, Tail>, node: Content) {
+    add_opacity(tail, node);
+    // Weights are known when the nearest are.
+    @if(!weighted) { add_color(tail, node, packed_alpha(node.yz)); }
+}
+
+// The nearest fragments, as far as there are so many.
+@if(weighted)
+fn extent_of(nearest: ptr<function, array<Content, ROOM>>, count: u32) -> Nearest {
+    let last = (*nearest)[max(count, 1u) - 1u];
+    return Nearest(nearness_of((*nearest)[0].x), nearness_of(last.x), count);
+}
+
+// The colours of a list that has more fragments than the nearest, each with its weight. The nearest have their alpha for a weight, and are taken out
+// of the sums again: so it is the same which of several that are the same is one of them.
+@if(weighted)
+fn add_weighted(tail: ptr<function, Tail>, head: u32, nearest: ptr<function, array<Content, ROOM>>) {
+    let extent = extent_of(nearest, K);
+    var all: Tail;
+    var next = head;
+    while next != NOTHING {
+        let node = nodes[next - 1u];
+        let content = content_of(node);
+        next = next_of(node);
+        let is_behind = K == 0u || is_before((*nearest)[ROOM - 1u], content);
+        let alpha = packed_alpha(content.yz);
+        add_color(&all, content, select(alpha, weight_of(alpha, nearness_of(content.x), extent), is_behind && K > 0u));
+    }
+    var own: Tail;
+    for (var i = 0u; i < K; i++) {
+        add_color(&own, (*nearest)[i], packed_alpha((*nearest)[i].yz));
+    }
+    (*tail).weight = min((*tail).weight + all.weight - min(own.weight, all.weight), FULL);
+    (*tail).color = min((*tail).color + all.color - min(own.color, all.color), vec3(FULL));
 }
 
 // The colour of a tail with a weight.
@@ -134,14 +177,22 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     // The next node is fetched before this one is looked at: the time is that of waiting for memory.
     var node = nodes[max(head, 1u) - 1u];
     var next = head;
+    @if(weighted)
+    var length = 0u;
     while next != NOTHING {
         next = next_of(node);
+        @if(weighted) { length++; }
         var passed = content_of(node);
         node = nodes[max(next, 1u) - 1u];
         if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             passed = insert(&nearest, passed);
         }
         @if(shaded || unshaded) { add(&tail, passed); }
+    }
+    @if(weighted) {
+        if length > K {
+            add_weighted(&tail, head, &nearest);
+        }
     }
     return blend(&nearest, tail);
 }

@@ -5,7 +5,7 @@ import package::fragment::{Fragment, pack_color, packed_color};
 import package::fragment::seen_key;
 import package::sums::{optical_depth, weighted};
 
-// Sums of a pixel: of optical depths, of alphas, and of red, green and blue, weighted by alpha.
+// Sums of a pixel: of optical depths, of weights, and of red, green and blue, weighted.
 @if(!hair_output)
 const SUMS: u32 = 5u;
 // Behind them, the key of the nearest fragment.
@@ -25,10 +25,10 @@ fn add(place: u32, value: u32) {
 }
 
 // The colour is that of a node, so that a tail has the same sums, whichever way its fragments came to it.
-fn add_to_rest(index: u32, fragment: Fragment) {
-    let color = weighted(packed_color(pack_color(fragment)), fragment.alpha, UNIT);
+fn add_to_rest(index: u32, fragment: Fragment, weight: u32) {
+    let color = weighted(packed_color(pack_color(fragment)), weight, UNIT);
     add(SUMS * index, optical_depth(fragment.alpha));
-    add(SUMS * index + 1u, fragment.alpha);
+    add(SUMS * index + 1u, weight);
     add(SUMS * index + 2u, color.r);
     add(SUMS * index + 3u, color.g);
     add(SUMS * index + 4u, color.b);

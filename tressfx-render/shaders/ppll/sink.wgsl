@@ -6,9 +6,11 @@ import package::node::{Node, PoolUniform, pack_node};
 import package::screen::view;
 
 @if(bounded)
-import package::kept::{is_nearest, kept_key};
+import package::kept::{is_nearest, kept_key, kept_nearness};
 @if(bounded)
 import package::rest::add_to_rest;
+@if(bounded)
+import package::weight::{Nearest, weight_of};
 
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
@@ -48,6 +50,21 @@ fn count_behind(count: u32) {
     }
 }
 
+// With which weight a fragment that has no node counts in the rest.
+@if(bounded)
+fn rest_weight(index: u32, fragment: Fragment) -> u32 {
+    if pool.weighs == 0u || pool.kept == 0u {
+        return fragment.alpha;
+    }
+    let first = nearest_keys[index * pool.kept];
+    let last = nearest_keys[index * pool.kept + pool.kept - 1u];
+    // Where fewer are there, all are kept, and this one has found no room.
+    if last == 0u {
+        return fragment.alpha;
+    }
+    return weight_of(fragment.alpha, fragment.nearness, Nearest(kept_nearness(first), kept_nearness(last), pool.kept));
+}
+
 // Puts a node at the head of the list of a pixel.
 fn link(index: u32, node: u32, fragment: Fragment) {
     let next = atomicExchange(&heads[index], node + 1u);
@@ -64,7 +81,7 @@ fn take(sink: ptr<function, Sink>, pixel: vec2<u32>, fragment: Fragment) {
         // Without a rest, what finds no room leaves the list as it is.
         @if(bounded) {
             if (*sink).stores == 1u {
-                add_to_rest(index, fragment);
+                add_to_rest(index, fragment, rest_weight(index, fragment));
             }
         }
     }

@@ -89,6 +89,25 @@ fn parts_of(stripe: Stripe, strength: f32, first: u32) -> Shares {
     return parts;
 }
 
+// Opacities with the mean `alpha` in two words: of 4 places 16 bits each, of more what they are made from.
+fn pack_parts(stripe: Stripe, alpha: f32) -> vec2<u32> {
+    if PLACES == 4u {
+        let parts = parts_of(stripe, strength_of(stripe, alpha), 0u);
+        return vec2(pack2x16unorm(parts[0].xy), pack2x16unorm(parts[0].zw));
+    }
+    let packed = pack_stripe(stripe);
+    return vec2(packed, bitcast<u32>(strength_of(unpack_stripe(packed), alpha)));
+}
+
+fn unpack_parts(packed: vec2<u32>, first: u32) -> Shares {
+    if PLACES == 4u {
+        var parts: Shares;
+        parts[0] = vec4(unpack2x16unorm(packed.x), unpack2x16unorm(packed.y));
+        return parts;
+    }
+    return parts_of(unpack_stripe(packed.x), bitcast<f32>(packed.y), first);
+}
+
 // The same for all places.
 fn all_places(share: f32) -> Shares {
     var shares: Shares;

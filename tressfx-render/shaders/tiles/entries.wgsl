@@ -2,7 +2,7 @@
 
 import package::fragment::{Fragment, OPAQUE, pack_color};
 @if(places)
-import package::places::{Shares, pack_stripe, parts_of, strength_of, unpack_stripe};
+import package::places::{Shares, pack_parts, unpack_parts};
 import package::quarter::PIXELS;
 import package::tiles::VERTEX_MASK;
 import package::unit::{ENTRIES, ENTRIES_OF_A_LANE, LANES};
@@ -15,9 +15,9 @@ var<workgroup> total: atomic<u32>;
 // Depth and source, as they are found, then in the order of pixels. When all are painted, both words of their colours, in the order of pixels
 // and depth.
 var<workgroup> words: array<array<u32, ENTRIES>, 2>;
-// Stripes and their strengths, in the same order.
+// Opacities at the places of the pixel, in the same order.
 @if(places)
-var<workgroup> stripes: array<vec2<u32>, ENTRIES>;
+var<workgroup> parts: array<vec2<u32>, ENTRIES>;
 // Depths in that order.
 @if(hair_output)
 var<workgroup> sorted_keys: array<u32, ENTRIES>;
@@ -153,13 +153,6 @@ fn unpack_rank(packed: u32) -> Rank {
     return Rank(extractBits(packed, 0u, PLACE_BITS), extractBits(packed, PLACE_BITS, PLACE_BITS), extractBits(packed, 2u * PLACE_BITS, PLACE_BITS));
 }
 
-// What a fragment covers, and with which strength.
-@if(places)
-fn packed_stripe(fragment: Fragment) -> vec2<u32> {
-    let packed = pack_stripe(fragment.stripe);
-    return vec2(packed, bitcast<u32>(strength_of(unpack_stripe(packed), f32(fragment.alpha) / OPAQUE)));
-}
-
 // What is not of the colour goes to its place at once.
 fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
     let rank = rank_of(entry, place);
@@ -167,7 +160,7 @@ fn paint(entry: Entry, place: u32, fragment: Fragment) -> Painted {
         @if(!few_turns) { atomicStore(&ties, 1u); }
         @if(few_turns) { atomicMax(&ties, rank.same); }
     }
-    @if(places) { stripes[rank.own] = packed_stripe(fragment); }
+    @if(places) { parts[rank.own] = pack_parts(fragment.stripe, f32(fragment.alpha) / OPAQUE); }
     @if(hair_output) { sorted_keys[rank.own] = entry.key; }
     return Painted(pack_color(fragment), pack_rank(rank));
 }
@@ -212,7 +205,7 @@ fn is_less(a: vec2<u32>, b: vec2<u32>, if_same: bool) -> bool {
 fn is_before(a: u32, b: u32) -> bool {
     @if(places) {
         if all(color_at(a) == color_at(b)) {
-            return is_less(stripes[a], stripes[b], a < b);
+            return is_less(parts[a], parts[b], a < b);
         }
     }
     return is_less(color_at(a), color_at(b), a < b);
@@ -232,35 +225,35 @@ fn place_by_color(painted: Painted) -> u32 {
 }
 
 @if(places)
-fn own_stripe(painted: Painted) -> vec2<u32> {
-    return stripes[min(unpack_rank(painted.rank).own, ENTRIES - 1u)];
+fn own_parts(painted: Painted) -> vec2<u32> {
+    return parts[min(unpack_rank(painted.rank).own, ENTRIES - 1u)];
 }
 
 // Puts those of one depth into the order of their colours: that in which they were put is not that of every run. All lanes come here.
 fn settle_ties(own: OwnPainted) {
     let places = vec3(place_by_color(own.first), place_by_color(own.second), place_by_color(own.third));
     @if(places)
-    let first_stripe = own_stripe(own.first);
+    let first_parts = own_parts(own.first);
     @if(places)
-    let second_stripe = own_stripe(own.second);
+    let second_parts = own_parts(own.second);
     @if(places)
-    let third_stripe = own_stripe(own.third);
+    let third_parts = own_parts(own.third);
     workgroupBarrier();
     put_color(own.first.color, places.x);
     put_color(own.second.color, places.y);
     put_color(own.third.color, places.z);
     @if(places) {
-        put_stripe(first_stripe, places.x);
-        put_stripe(second_stripe, places.y);
-        put_stripe(third_stripe, places.z);
+        put_parts(first_parts, places.x);
+        put_parts(second_parts, places.y);
+        put_parts(third_parts, places.z);
     }
     workgroupBarrier();
 }
 
 @if(places)
-fn put_stripe(own: vec2<u32>, place: u32) {
+fn put_parts(own: vec2<u32>, place: u32) {
     if place < ENTRIES {
-        stripes[place] = own;
+        parts[place] = own;
     }
 }
 
@@ -287,6 +280,5 @@ fn color_at(place: u32) -> vec2<u32> {
 // The opacities at a place, of the places of the pixel from four `first` on.
 @if(places)
 fn parts_at(place: u32, first: u32) -> Shares {
-    let stripe = stripes[place];
-    return parts_of(unpack_stripe(stripe.x), bitcast<f32>(stripe.y), first);
+    return unpack_parts(parts[place], first);
 }

@@ -7,7 +7,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 use tressfx_core::shader::Binding;
 
-use super::PpllDesc;
+use super::{PpllDesc, Tail};
 use crate::counters::ViewCounters;
 use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
@@ -38,8 +38,8 @@ gpu_struct! {
         pub kept: u32,
         /// How many of a pixel were to have one.
         pub asked: u32,
-        /// Nothing.
-        pub unused_0: u32,
+        /// 1 where the colours of a tail are weighted by what is seen of them.
+        pub weighs: u32,
         /// Nothing.
         pub unused_1: u32,
         /// Nothing.
@@ -127,15 +127,22 @@ impl NodePool {
     }
 
     /// What the limits are when so many groups ask for room, of the nearest fragments of a pixel as many as are `kept` of those
-    /// that are `asked` for, and what colour a tail has that is not shaded.
-    pub(crate) fn upload(&self, list: &mut PassList, groups: u64, [kept, asked]: [u32; 2], unlit: [f32; 4]) {
+    /// that are `asked` for, and what is seen of a tail: `unlit` is the colour of one that is not shaded.
+    pub(crate) fn upload(
+        &self,
+        list: &mut PassList,
+        groups: u64,
+        [kept, asked]: [u32; 2],
+        tail: Tail,
+        unlit: [f32; 4],
+    ) {
         let uniform = PoolUniform {
             capacity: self.capacity,
             limit: self.count_limit,
             small_request: (u64::from(self.count_limit) / groups.max(1)) as u32,
             kept,
             asked,
-            unused_0: 0,
+            weighs: u32::from(tail == Tail::Weighted),
             unused_1: 0,
             unused_2: 0,
             unlit,

@@ -34,7 +34,8 @@ pub(crate) struct Variant {
 impl Variant {
     fn specialization(&self) -> Specialization {
         at_places(self.output.specialization(), self.places, 1)
-            .feature("shaded", self.tail == Tail::Shaded)
+            .feature("shaded", matches!(self.tail, Tail::Shaded | Tail::Weighted))
+            .feature("weighted", self.tail == Tail::Weighted)
             .feature("unshaded", self.tail == Tail::Unshaded)
             .feature("bounded", self.bounded)
             .constant("K", self.k)

@@ -30,13 +30,34 @@ pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, places: u32, tail
     for fragment in nearest {
         front.take(fragment.color, &fragment.stripe.parts(places, fragment.alpha));
     }
-    let weight: f64 = rest.iter().map(|fragment| fragment.alpha).sum();
-    if weight > 0.0 && tail != Tail::None {
-        let average = rest.iter().map(|fragment| fragment.alpha * fragment.color).sum::<DVec3>() / weight;
+    let weights: Vec<f64> = rest.iter().map(|fragment| weight(nearest, fragment, tail)).collect();
+    let sum: f64 = weights.iter().sum();
+    if sum > 0.0 && tail != Tail::None {
+        let average = rest.iter().zip(&weights).map(|(fragment, weight)| *weight * fragment.color).sum::<DVec3>() / sum;
         let passed: f64 = rest.iter().map(|fragment| 1.0 - fragment.alpha).product();
-        front.take(if tail == Tail::Shaded { average } else { unlit }, &vec![1.0 - passed; places as usize]);
+        front.take(if tail == Tail::Unshaded { unlit } else { average }, &vec![1.0 - passed; places as usize]);
     }
     front.color.extend(1.0 - front.passes())
+}
+
+/// The nearest fragments are taken to be at least this share of their nearness apart: what they are closer is rounding in `f32`.
+const THINNEST: f64 = 1e-5;
+
+/// No fragment counts less than this share of its alpha.
+const LEAST_SEEN: f64 = 1.0 / 1024.0;
+
+/// With which weight a fragment of a tail counts in its colour.
+///
+/// What lies deep in a tail is seen less than what lies at its beginning. How much less is not known without order, but about: behind the nearest
+/// fragments hair goes on as dense as it is among them, and each layer stops as much light as this fragment does. How dense hair is has an error
+/// of its own, since the nearest are few: what is seen is the mean over all densities that so many fragments may come from (a gamma distribution).
+fn weight(nearest: &[Fragment], fragment: &Fragment, tail: Tail) -> f64 {
+    let (Tail::Weighted, [first, .., last]) = (tail, nearest) else { return fragment.alpha };
+    let thick = (first.nearness - last.nearness).max(THINNEST * first.nearness).max(1e-30);
+    let layer = thick / (nearest.len() - 1) as f64;
+    let layers = (last.nearness - fragment.nearness).max(0.0) / layer;
+    let (depth, count) = (-(1.0 - fragment.alpha).max(1e-9).ln() * layers, nearest.len() as f64);
+    fragment.alpha * (1.0 + depth / count).powf(-count).max(LEAST_SEEN)
 }
 
 /// What lies before the hair that comes next.
