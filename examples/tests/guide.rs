@@ -72,7 +72,7 @@ fn what_has_no_file_has_its_defaults_too() {
     let StrandOptions { vertices, follows, follow_radius, tip_separation, shuffle, seed, metres_per_unit } =
         StrandOptions::default();
     let Wind { velocity, half_angle, gust_period } = Wind::default();
-    let PpllDesc { k, max_node_bytes, count_limit, fill, .. } = PpllDesc::default();
+    let PpllDesc { k, max_node_bytes, count_limit, fill, places, .. } = PpllDesc::default();
     let shortcut = ShortCutDesc::default();
     let ShadowDesc { texels, layers, cells, lights, samples, .. } = ShadowDesc::default();
     let LodDesc { width, deviation, least, .. } = LodDesc::default();
@@ -127,6 +127,7 @@ fn what_has_no_file_has_its_defaults_too() {
                 ("k", k.to_string()),
                 ("max_node_bytes", max_node_bytes.to_string()),
                 ("count_limit", count_limit.to_string()),
+                ("places", places.to_string()),
                 ("fill", format!("Fill::{fill:?}")),
             ],
         ),
