@@ -78,27 +78,20 @@ fn add(tail: ptr<function, Tail>, node: Content) {
     @if(!weighted) { add_color(tail, node, packed_alpha(node.yz)); }
 }
 
-// The nearest fragments, as far as there are so many.
-@if(weighted)
-fn extent_of(nearest: ptr<function, array<Content, ROOM>>, count: u32) -> Nearest {
-    let last = (*nearest)[max(count, 1u) - 1u];
-    return Nearest(nearness_of((*nearest)[0].x), nearness_of(last.x), count);
-}
-
 // The colours of a list that has more fragments than the nearest, each with its weight. The nearest have their alpha for a weight, and are taken out
 // of the sums again: so it is the same which of several that are the same is one of them.
 @if(weighted)
 fn add_weighted(tail: ptr<function, Tail>, head: u32, nearest: ptr<function, array<Content, ROOM>>) {
-    let extent = extent_of(nearest, K);
+    let extent = Nearest(nearness_of((*nearest)[0].x), nearness_of((*nearest)[ROOM - 1u].x), K);
     var all: Tail;
     var next = head;
     while next != NOTHING {
         let node = nodes[next - 1u];
         let content = content_of(node);
         next = next_of(node);
-        let is_behind = K == 0u || is_before((*nearest)[ROOM - 1u], content);
+        let is_behind = K > 0u && is_before((*nearest)[ROOM - 1u], content);
         let alpha = packed_alpha(content.yz);
-        add_color(&all, content, select(alpha, weight_of(alpha, nearness_of(content.x), extent), is_behind && K > 0u));
+        add_color(&all, content, select(alpha, weight_of(alpha, nearness_of(content.x), extent), is_behind));
     }
     var own: Tail;
     for (var i = 0u; i < K; i++) {
