@@ -49,9 +49,13 @@ fn loose_dense_and_faint_hair_is_as_in_f64() {
 }
 
 fn is_as_in_f64(technique: &str, of: AtPlaces, (groom_name, groom, size): &Case) {
-    // Edges of stripes have 11 bits. In lists of faint hair it shows which of two fragments with nearly one depth is the eighth.
-    let less = if *groom_name == "faint" && of(1).1 == 8 { 10.0 } else { 0.0 };
-    for (places, least) in [(4, 85.0 - less), (16, 82.0 - less), (64, 82.0 - less)] {
+    // In lists edges of stripes have 11 bits, and of faint hair it shows which of two fragments with nearly one depth is the eighth.
+    let least = match (of(1).1, *groom_name) {
+        (usize::MAX, _) => 85.0,
+        (_, "faint") => 75.0,
+        _ => 82.0,
+    };
+    for places in [4, 16, 64] {
         let Some(mut screen) = screen(|setup| {
             at(of, places)(setup);
             setup.size = *size;

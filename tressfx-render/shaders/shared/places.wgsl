@@ -89,14 +89,14 @@ fn parts_of(stripe: Stripe, strength: f32, first: u32) -> Shares {
     return parts;
 }
 
-// Opacities with the mean `alpha` in two words: of 4 places 16 bits each, of more what they are made from.
+// Opacities with the mean `alpha` in two words, 16 bits each: those of 4 places, or what more are made from.
 fn pack_parts(stripe: Stripe, alpha: f32) -> vec2<u32> {
+    let strength = strength_of(stripe, alpha);
     if PLACES == 4u {
-        let parts = parts_of(stripe, strength_of(stripe, alpha), 0u);
+        let parts = parts_of(stripe, strength, 0u);
         return vec2(pack2x16unorm(parts[0].xy), pack2x16unorm(parts[0].zw));
     }
-    let packed = pack_stripe(stripe);
-    return vec2(packed, bitcast<u32>(strength_of(unpack_stripe(packed), alpha)));
+    return vec2(pack2x16unorm(stripe.edges + 0.5), pack2x16unorm(vec2(0.5 * stripe.right + 0.5, 0.5 * strength)));
 }
 
 fn unpack_parts(packed: vec2<u32>, first: u32) -> Shares {
@@ -105,7 +105,8 @@ fn unpack_parts(packed: vec2<u32>, first: u32) -> Shares {
         parts[0] = vec4(unpack2x16unorm(packed.x), unpack2x16unorm(packed.y));
         return parts;
     }
-    return parts_of(unpack_stripe(packed.x), bitcast<f32>(packed.y), first);
+    let right_and_strength = 2.0 * unpack2x16unorm(packed.y);
+    return parts_of(Stripe(unpack2x16unorm(packed.x) - 0.5, right_and_strength.x - 1.0), right_and_strength.y, first);
 }
 
 // The same for all places.
