@@ -139,6 +139,14 @@ fn its_settings_change_between_frames() {
     for technique in refused {
         assert!(screen.renderer.retune(&mut *screen.backend, technique).is_err());
     }
+    // Nothing has changed where only a part of it is refused.
+    let part = AutoDesc::default().lists(PpllDesc::default()).tiles(TilesDesc::default().places(4));
+    assert!(screen.renderer.retune(&mut *screen.backend, part).is_err());
+    assert!(screen.hair(&[&groom]).bytes == lists.hair(&[&groom]).bytes);
+    let other_places = AutoDesc::default().tiles(TilesDesc::default().places(3));
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(other_places);
+    let error = HairRenderer::new(&mut NullBackend::default(), &desc).unwrap_err().to_string();
+    assert!(error.contains("1, 4, 16 or 64"), "{error}");
 }
 
 #[test]

@@ -26,6 +26,8 @@ fn techniques() -> Vec<Technique> {
         lists.fill(RASTER).into(),
         lists.cap(2).into(),
         lists.cap(2).fill(RASTER).into(),
+        lists.places(16).tail(Tail::Weighted).into(),
+        lists.places(4).tail(Tail::Weighted).cap(2).into(),
         mean.into(),
         mean.fill(RASTER).into(),
         mean.ordered(true).into(),

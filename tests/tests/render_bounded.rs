@@ -29,7 +29,8 @@ fn a_cap_changes_memory_and_the_picture_only_below_k() {
     let groom = Groom::wavy(1500, 16, 3, material());
     for fill in [Fill::Compute, Fill::Raster] {
         let tails = [(8, Tail::Shaded), (8, Tail::Weighted), (8, Tail::Unshaded), (3, Tail::None), (32, Tail::Shaded)];
-        for (k, tail) in tails.into_iter().chain([(0, Tail::Shaded), (0, Tail::Weighted)]) {
+        let weighted = [0, 3, 5].map(|k| (k, Tail::Weighted));
+        for (k, tail) in tails.into_iter().chain([(0, Tail::Shaded)]).chain(weighted) {
             let desc = PpllDesc::default().k(k).tail(tail).fill(fill);
             for cap in [0, 1, 3, 8, 40] {
                 let Some(mut all) = screen(lists(desc.k(k.min(cap)))) else { return };
@@ -145,8 +146,10 @@ fn a_cap_comes_and_goes_between_frames_with_its_memory() {
     let Some(mut screen) = screen(|_| ()) else { return };
     let expected = screen.hair(&[&groom]);
     let first = screen.renderer.technique_bytes();
-    for (k, cap) in [(8, Some(8)), (8, Some(2)), (4, Some(8)), (8, None)] {
-        let desc = PpllDesc::default().k(k).cap(cap);
+    let (shaded, weighted) = (Tail::Shaded, Tail::Weighted);
+    let changes = [(8, Some(8), shaded), (8, Some(8), weighted), (8, Some(2), shaded), (4, Some(8), weighted)];
+    for (k, cap, tail) in changes.into_iter().chain([(8, None, weighted), (8, None, shaded)]) {
+        let desc = PpllDesc::default().k(k).cap(cap).tail(tail);
         let before = (screen.backend_memory(), screen.renderer.technique_bytes());
         screen.renderer.retune(&mut *screen.backend, desc).unwrap();
         let after = (screen.backend_memory(), screen.renderer.technique_bytes());

@@ -54,6 +54,29 @@ fn weighted_tails_of_dense_hair_are_nearer_to_exact_order() {
     }
 }
 
+/// Dark hair, opaque and wide or faint, and far behind it dark hair that is all tail: its weights are the least.
+#[test]
+fn a_gap_before_a_dark_tail_leaves_it_its_colour() {
+    let dark = |opacity: f32| {
+        material().with(|m| {
+            m.base_color = glam::Vec3::new(0.1, 0.05, 0.02);
+            (m.opacity, m.tip_opacity) = (opacity, opacity);
+        })
+    };
+    for opacity in [1.0, 0.3, 0.06] {
+        let (front, mut back) = (Groom::wavy(1500, 12, 3, dark(opacity)), Groom::wavy(1500, 12, 4, dark(opacity)));
+        back.positions.iter_mut().for_each(|position| position[2] -= 2.0);
+        let Some(mut screen) = screen(|_| ()) else { return };
+        for k in [3, 8] {
+            retune(&mut screen, k, Tail::Weighted);
+            let picture = screen.hair(&[&front, &back]);
+            let difference = picture.difference(&in_f64(&screen, &[&front, &back], k, Tail::Weighted));
+            eprintln!("opacity {opacity}, k = {k}: {difference:?}");
+            assert!(difference.max < 0.01 && difference.psnr > 70.0, "opacity {opacity}, k = {k}: {difference:?}");
+        }
+    }
+}
+
 #[test]
 fn tails_differ_and_opacity_does_not() {
     let groom = Groom::wavy(1500, 16, 3, material());
@@ -78,7 +101,8 @@ fn tails_differ_and_opacity_does_not() {
 fn what_is_changed_between_frames_draws_as_a_renderer_of_its_own() {
     let groom = Groom::wavy(400, 16, 5, material());
     let Some(mut changed) = screen(|_| ()) else { return };
-    for (k, tail) in [(3, Tail::None), (8, Tail::Shaded), (0, Tail::Unshaded), (3, Tail::None), (32, Tail::Shaded)] {
+    let changes = [(3, Tail::None), (8, Tail::Shaded), (8, Tail::Weighted), (0, Tail::Unshaded), (3, Tail::None)];
+    for (k, tail) in changes.into_iter().chain([(3, Tail::Weighted), (32, Tail::Shaded)]) {
         retune(&mut changed, k, tail);
         let Some(mut fresh) = screen(|setup| setup.technique = PpllDesc::default().k(k).tail(tail).into()) else {
             return;
@@ -94,10 +118,11 @@ fn what_cannot_be_changed_is_refused_and_nothing_changes() {
     let Some(mut screen) = screen(|_| ()) else { return };
     let expected = screen.hair(&[&groom]);
     let lists = PpllDesc::default();
-    let refused: [(Technique, &str); 5] = [
+    let refused: [(Technique, &str); 6] = [
         (lists.k(K_RANGE.end() + 1).into(), "from 0 to 32"),
         (lists.fill(Fill::Raster).into(), "needs a new renderer"),
         (lists.max_node_bytes(160).into(), "needs a new renderer"),
+        (lists.places(4).into(), "needs a new renderer"),
         (ShortCutDesc::default().into(), "another technique"),
         (TilesDesc::default().into(), "another technique"),
     ];

@@ -12,6 +12,7 @@ use tressfx_core::view::View;
 
 use crate::counters::Counters;
 use crate::output::Output;
+use crate::places::check_places;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::predict;
 use crate::renderer::Targets;
@@ -42,7 +43,7 @@ const NO_DOUBT: f64 = 3.0;
 pub struct AutoDesc {
     /// The lists.
     pub lists: PpllDesc,
-    /// The tiles.
+    /// The tiles. With as many places in a pixel as lists have the picture stays what it is where one takes over from the other.
     pub tiles: TilesDesc,
     /// Fragments a pixel with hair, in the mean of a view, from which on hair is drawn in tiles. They also draw it where there are more
     /// fragments than lists hold unbounded.
@@ -146,6 +147,7 @@ impl Auto {
     pub(crate) fn new(backend: &mut dyn Backend, desc: &AutoDesc, size: [u32; 2], output: Output) -> Result<Self> {
         let caps = backend.caps();
         let bytes = caps.max_storage_binding_bytes.min(caps.max_buffer_bytes);
+        check_places("hair.render.auto", desc.tiles.places)?;
         Ok(Self {
             desc: *desc,
             size,
@@ -281,9 +283,7 @@ impl TechniqueInstance for Auto {
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
         let Technique::Auto(desc) = technique else { return Err(another_technique("hair.render.auto")) };
-        if desc.tiles.max_reference_bytes != self.desc.tiles.max_reference_bytes {
-            return Err(another_technique("hair.render.auto"));
-        }
+        desc.tiles.check_same_renderer(&self.desc.tiles)?;
         self.lists.retune(backend, &desc.lists.into())?;
         if let Some(tiles) = &mut self.tiles {
             tiles.retune(backend, &desc.tiles.into())?;

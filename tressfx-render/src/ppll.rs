@@ -409,7 +409,7 @@ impl TechniqueInstance for Ppll {
         self.usage.begin_frame();
         self.views = views.max(1);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.upload(list, groups, [self.kept, self.desc.asked()], self.desc.tail, tail::unlit(draws));
+        self.pool.upload(list, groups, self.kept, &self.desc, tail::unlit(draws));
     }
 
     fn hairy(&self) -> &Resolved {

@@ -92,6 +92,20 @@ impl TilesDesc {
     }
 }
 
+impl TilesDesc {
+    /// Whether a renderer for another description can take this one.
+    pub(crate) fn check_same_renderer(&self, other: &Self) -> Result<()> {
+        let differs = [
+            ("another limit of memory", self.max_reference_bytes != other.max_reference_bytes),
+            ("another number of places in a pixel", self.places != other.places),
+        ];
+        match differs.into_iter().find(|(_, differs)| *differs) {
+            Some((what, _)) => Err(Error::rule("hair.render.tiles", format!("{what} needs a new renderer"))),
+            None => Ok(()),
+        }
+    }
+}
+
 impl Default for TilesDesc {
     /// Room for 16.7 million references; a pixel is closed when less than 1/1024 passes.
     fn default() -> Self {
@@ -284,12 +298,7 @@ impl TechniqueInstance for Tiles {
 
     fn retune(&mut self, _: &mut dyn Backend, technique: &Technique) -> Result<()> {
         let Technique::Tiles(desc) = technique else { return Err(another_technique("hair.render.tiles")) };
-        if desc.max_reference_bytes != self.desc.max_reference_bytes {
-            return Err(Error::rule("hair.render.tiles", "another limit of memory needs a new renderer".to_owned()));
-        }
-        if desc.places != self.desc.places {
-            return Err(Error::rule("hair.render.tiles", "other places in a pixel need a new renderer".to_owned()));
-        }
+        desc.check_same_renderer(&self.desc)?;
         self.desc = *desc;
         Ok(())
     }

@@ -23,7 +23,7 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volu
 const COPIES: &str = "[material]\ncopies = 3\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 23] = [
+const VARIANTS: [&[&str]; 25] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml", "--fields"],
@@ -47,6 +47,8 @@ const VARIANTS: [&[&str]; 23] = [
     &["--oit", "tiles", "--places", "64", "--hair-output", "--for-cpu"],
     &["--oit", "ppll", "--places", "4", "--fill", "raster"],
     &["--oit", "ppll", "--places", "16", "--oit-cap", "8", "--hair-output"],
+    &["--oit", "ppll", "--oit-tail", "weighted"],
+    &["--oit", "ppll", "--places", "64", "--oit-tail", "weighted", "--oit-cap", "8", "--hair-output"],
 ];
 
 fn tressfx(folder: &Path, words: &[&str]) -> Output {
@@ -138,6 +140,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "tangents",
         "unshaded",
         "volume",
+        "weighted",
     ];
     // It is always written for capsules.
     let all = names

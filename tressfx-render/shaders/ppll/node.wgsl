@@ -38,7 +38,8 @@ struct PoolUniform {
     asked: u32,
     // 1 where the colours of a tail are weighted by what is seen of them.
     weighs: u32,
-    unused_1: u32,
+    // How many of the nearest are put in order.
+    sorted: u32,
     unused_2: u32,
     // The colour of a tail that is not shaded.
     unlit: vec4<f32>,

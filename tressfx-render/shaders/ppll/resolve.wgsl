@@ -1,5 +1,6 @@
 // The list of each pixel becomes one colour. The K nearest fragments are put in order, the rest, its tail, is summed up in
-// integers: with its colours, or, unshaded, with its opacities alone, or not at all. Where lists are bounded, the rest that has
+// integers: with its colours, or, unshaded, with its opacities alone, or not at all. Where colours are weighted by what is seen of them, a list is gone
+// through once more. Where lists are bounded, the rest that has
 // no nodes begins the tail.
 //
 // The order of a list changes from run to run with the order of the atomics; the result does not, to the bit: fragments
@@ -82,7 +83,8 @@ fn add(tail: ptr<function, Tail>, node: Content) {
 // of the sums again: so it is the same which of several that are the same is one of them.
 @if(weighted)
 fn add_weighted(tail: ptr<function, Tail>, head: u32, nearest: ptr<function, array<Content, ROOM>>) {
-    let extent = Nearest(nearness_of((*nearest)[0].x), nearness_of((*nearest)[ROOM - 1u].x), K);
+    // Their number is read where the fill reads it: with a constant, compilers round what is computed from it in another way.
+    let extent = Nearest(nearness_of((*nearest)[0].x), nearness_of((*nearest)[ROOM - 1u].x), pool.sorted);
     var all: Tail;
     var next = head;
     while next != NOTHING {
@@ -97,7 +99,8 @@ fn add_weighted(tail: ptr<function, Tail>, head: u32, nearest: ptr<function, arr
     for (var i = 0u; i < K; i++) {
         add_color(&own, (*nearest)[i], packed_alpha((*nearest)[i].yz));
     }
-    (*tail).weight = min((*tail).weight + all.weight - min(own.weight, all.weight), FULL);
+    // A tail has a weight, also where a driver of a CPU has ended the loop, see `turns`.
+    (*tail).weight = clamp((*tail).weight + all.weight - min(own.weight, all.weight), 1u, FULL);
     (*tail).color = min((*tail).color + all.color - min(own.color, all.color), vec3(FULL));
 }
 

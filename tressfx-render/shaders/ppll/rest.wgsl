@@ -11,8 +11,8 @@ const SUMS: u32 = 5u;
 // Behind them, the key of the nearest fragment.
 @if(hair_output)
 const SUMS: u32 = 6u;
-// Of colours: there is room for 131 thousand white fragments.
-const UNIT: f32 = 16384.0;
+// Of colours: there is room for 32 thousand white fragments.
+const UNIT: f32 = 65536.0;
 
 @group(0) @binding(11) var<storage, read_write> rest: array<atomic<u32>>;
 

@@ -15,10 +15,10 @@ struct Nearest {
     count: u32,
 }
 
-// No fragment counts less than this share of its alpha: sums have parts for it.
-const LEAST_SEEN: f32 = 0.0009765625; // 2^-10
-// The nearest are taken to be at least this share of their nearness apart: what they are closer is rounding.
-const THINNEST: f32 = 1e-5;
+// No weight is less, in units of alpha, unless alpha is: of smaller ones sums of colours have too few parts.
+const LEAST_WEIGHT: u32 = 32u;
+// The nearest are taken to be at least this share of their nearness apart: of what is closer rounding is too large a part.
+const THINNEST: f32 = 1e-6;
 
 // Layers from the last of the nearest to a fragment.
 fn layers_to(nearness: f32, nearest: Nearest) -> f32 {
@@ -27,11 +27,11 @@ fn layers_to(nearness: f32, nearest: Nearest) -> f32 {
     return f32(max(nearest.count, 1u) - 1u) * behind / thick;
 }
 
-// In units of alpha, at least 1.
+// In units of alpha.
 fn weight_of(alpha: u32, nearness: f32, nearest: Nearest) -> u32 {
     let passes = 1.0 - f32(min(alpha, 65534u)) / OPAQUE;
     let count = f32(max(nearest.count, 1u));
     let depth = -log(passes) * layers_to(nearness, nearest);
     let seen = pow(1.0 + depth / count, -count);
-    return max(u32(round(f32(alpha) * max(seen, LEAST_SEEN))), 1u);
+    return max(u32(round(f32(alpha) * seen)), min(alpha, LEAST_WEIGHT));
 }

@@ -89,14 +89,15 @@ fn parts_of(stripe: Stripe, strength: f32, first: u32) -> Shares {
     return parts;
 }
 
-// Opacities with the mean `alpha` in two words, 16 bits each: those of 4 places, or what more are made from.
+// Opacities with the mean `alpha` in two words, 16 bits each: those of 4 places, or what more are made from. Of the strength it is the root: that of
+// a faint fragment is small.
 fn pack_parts(stripe: Stripe, alpha: f32) -> vec2<u32> {
     let strength = strength_of(stripe, alpha);
     if PLACES == 4u {
         let parts = parts_of(stripe, strength, 0u);
         return vec2(pack2x16unorm(parts[0].xy), pack2x16unorm(parts[0].zw));
     }
-    return vec2(pack2x16unorm(stripe.edges + 0.5), pack2x16unorm(vec2(0.5 * stripe.right + 0.5, 0.5 * strength)));
+    return vec2(pack2x16unorm(stripe.edges + 0.5), pack2x16unorm(vec2(0.5 * stripe.right + 0.5, sqrt(0.5 * strength))));
 }
 
 fn unpack_parts(packed: vec2<u32>, first: u32) -> Shares {
@@ -105,8 +106,9 @@ fn unpack_parts(packed: vec2<u32>, first: u32) -> Shares {
         parts[0] = vec4(unpack2x16unorm(packed.x), unpack2x16unorm(packed.y));
         return parts;
     }
-    let right_and_strength = 2.0 * unpack2x16unorm(packed.y);
-    return parts_of(Stripe(unpack2x16unorm(packed.x) - 0.5, right_and_strength.x - 1.0), right_and_strength.y, first);
+    let right_and_root = unpack2x16unorm(packed.y);
+    let stripe = Stripe(unpack2x16unorm(packed.x) - 0.5, 2.0 * right_and_root.x - 1.0);
+    return parts_of(stripe, 2.0 * right_and_root.y * right_and_root.y, first);
 }
 
 // The same for all places.

@@ -12,9 +12,9 @@ fn optical_depth(alpha: u32) -> u32 {
     return u32(round(-log2(max(1.0 - f32(alpha) / OPAQUE, 1.0 / 65536.0)) * OPTICAL_UNIT));
 }
 
-// A colour times alpha, up to 256, in parts of 1 / unit.
-fn weighted(color: vec3<f32>, alpha: u32, unit: f32) -> vec3<u32> {
-    return vec3<u32>(round(min(color * (f32(alpha) / OPAQUE), vec3(256.0)) * unit));
+// A colour times a weight in units of alpha, up to 256, in parts of 1 / unit.
+fn weighted(color: vec3<f32>, weight: u32, unit: f32) -> vec3<u32> {
+    return vec3<u32>(round(min(color * (f32(weight) / OPAQUE), vec3(256.0)) * unit));
 }
 
 // What passes through a sum of optical depths.
@@ -22,7 +22,7 @@ fn transmittance_of(optical: u32) -> f32 {
     return exp2(-f32(optical) / OPTICAL_UNIT);
 }
 
-// The colour of a sum of weighted colours. `weight` is the sum of their alphas, not 0.
+// The colour of a sum of weighted colours. `weight` is the sum of their weights, not 0.
 fn mean_color(color: vec3<u32>, weight: u32, unit: f32) -> vec3<f32> {
     return vec3<f32>(color) * (OPAQUE / unit) / f32(weight);
 }

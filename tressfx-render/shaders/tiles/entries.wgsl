@@ -15,7 +15,7 @@ var<workgroup> total: atomic<u32>;
 // Depth and source, as they are found, then in the order of pixels. When all are painted, both words of their colours, in the order of pixels
 // and depth.
 var<workgroup> words: array<array<u32, ENTRIES>, 2>;
-// Opacities at the places of the pixel, in the same order.
+// Opacities at the places of the pixel, or what they are made from, in the same order.
 @if(places)
 var<workgroup> parts: array<vec2<u32>, ENTRIES>;
 // Depths in that order.
@@ -277,7 +277,7 @@ fn color_at(place: u32) -> vec2<u32> {
     return vec2(words[0][place], words[1][place]);
 }
 
-// The opacities at a place, of the places of the pixel from four `first` on.
+// The opacities of an entry, at the places of the pixel from four `first` on.
 @if(places)
 fn parts_at(place: u32, first: u32) -> Shares {
     return unpack_parts(parts[place], first);

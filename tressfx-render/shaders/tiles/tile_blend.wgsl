@@ -327,8 +327,12 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
             last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
         }
         seen_to = -1.0;
-        recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
-        @if(few_turns) { turns = 0u; }
+        @if(!few_turns) { recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter])); }
+        @if(few_turns) {
+            // Where a group ends depends on its units: they must not depend on the frame before.
+            recall_cuts(0u);
+            turns = 0u;
+        }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);

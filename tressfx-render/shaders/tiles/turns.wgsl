@@ -3,6 +3,9 @@
 // of its tile behind there as dropped. The end of a loop counts too; loops of constant length are taken as unrolled but where it costs little.
 
 import package::entries::{most_of_a_pixel, ties};
+@if(places)
+import package::places::{FOURS, OWN_FOURS};
+import package::unit::ENTRIES_OF_A_LANE;
 
 // For each chunk of references its looks, and for each segment that a lane draws the rows and the pixels of a quarter.
 const TURNS_OF_A_CHUNK: u32 = 10u;
@@ -10,10 +13,15 @@ const TURNS_OF_A_SEGMENT: u32 = 23u;
 // A lane has so many fragments to find the rank of, those of its pixel to blend, and, where depths are the same, to find its place among these.
 const TURNS_OF_AN_ENTRY: u32 = 4u;
 const TURNS_OF_A_TIE: u32 = 3u;
+// Where a lane has several fours of places, for each entry that it blends the loops over these.
+const LOOPS_OF_PLACES: u32 = 5u;
 // Beside those, for each unit: the slices that are looked through for its end, and the pixels.
 const TURNS_OF_A_UNIT: u32 = 64u;
 // The last unit may take some more.
+@if(!places)
 const MOST_TURNS: u32 = 60000u;
+@if(places)
+const MOST_TURNS: u32 = select(60000u, 50000u, OWN_FOURS > 1u);
 
 // At most so many in the lane that has the most.
 var<workgroup> turns: u32;
@@ -35,5 +43,9 @@ fn note_unit(is_sorted: bool) {
         let same = atomicLoad(&ties);
         let most = most_of_a_pixel();
         turns += TURNS_OF_AN_ENTRY * most + TURNS_OF_A_TIE * select(0u, most + same, same > 0u);
+        @if(places) {
+            // All places are gone through for each fragment that a lane paints.
+            turns += ENTRIES_OF_A_LANE * (FOURS + 1u) + select(0u, LOOPS_OF_PLACES * (OWN_FOURS + 1u) * most, OWN_FOURS > 1u);
+        }
     }
 }

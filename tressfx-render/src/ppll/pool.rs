@@ -40,8 +40,8 @@ gpu_struct! {
         pub asked: u32,
         /// 1 where the colours of a tail are weighted by what is seen of them.
         pub weighs: u32,
-        /// Nothing.
-        pub unused_1: u32,
+        /// How many of the nearest are put in order.
+        pub sorted: u32,
         /// Nothing.
         pub unused_2: u32,
         /// The colour of a tail that is not shaded.
@@ -128,22 +128,15 @@ impl NodePool {
 
     /// What the limits are when so many groups ask for room, of the nearest fragments of a pixel as many as are `kept` of those
     /// that are `asked` for, and what is seen of a tail: `unlit` is the colour of one that is not shaded.
-    pub(crate) fn upload(
-        &self,
-        list: &mut PassList,
-        groups: u64,
-        [kept, asked]: [u32; 2],
-        tail: Tail,
-        unlit: [f32; 4],
-    ) {
+    pub(crate) fn upload(&self, list: &mut PassList, groups: u64, kept: u32, desc: &PpllDesc, unlit: [f32; 4]) {
         let uniform = PoolUniform {
             capacity: self.capacity,
             limit: self.count_limit,
             small_request: (u64::from(self.count_limit) / groups.max(1)) as u32,
             kept,
-            asked,
-            weighs: u32::from(tail == Tail::Weighted),
-            unused_1: 0,
+            asked: desc.asked(),
+            weighs: u32::from(desc.tail == Tail::Weighted),
+            sorted: desc.k,
             unused_2: 0,
             unlit,
         };

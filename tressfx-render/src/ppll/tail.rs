@@ -13,7 +13,8 @@ pub enum Tail {
     #[default]
     Shaded,
     /// The mean of their colours, each weighted by what is seen of it if hair goes on behind the nearest as dense as it is among them, with the
-    /// opacity of all of them. Nearer to the truth where hair is dense; lists are gone through once more.
+    /// opacity of all of them. Nearer to the truth where hair is dense; lists are gone through once more. Bounded lists have the same picture to
+    /// the bit where the device rounds the depths of fragments alike in all kernels.
     Weighted,
     /// The colour of hair without light, with the opacity of all of them: [`Material::base_color`](crate::Material::base_color);
     /// of several sections, their mean, weighted by their segments.

@@ -40,11 +40,12 @@ pub fn resolve_with_tail(fragments: &mut [Fragment], k: usize, places: u32, tail
     front.color.extend(1.0 - front.passes())
 }
 
-/// The nearest fragments are taken to be at least this share of their nearness apart: what they are closer is rounding in `f32`.
-const THINNEST: f64 = 1e-5;
+/// The nearest fragments are taken to be at least this share of their nearness apart: of what is closer rounding in `f32` is too
+/// large a part.
+const THINNEST: f64 = 1e-6;
 
-/// No fragment counts less than this share of its alpha.
-const LEAST_SEEN: f64 = 1.0 / 1024.0;
+/// No weight is less unless alpha is.
+const LEAST_WEIGHT: f64 = 32.0 / 65535.0;
 
 /// With which weight a fragment of a tail counts in its colour.
 ///
@@ -56,8 +57,8 @@ fn weight(nearest: &[Fragment], fragment: &Fragment, tail: Tail) -> f64 {
     let thick = (first.nearness - last.nearness).max(THINNEST * first.nearness).max(1e-30);
     let layer = thick / (nearest.len() - 1) as f64;
     let layers = (last.nearness - fragment.nearness).max(0.0) / layer;
-    let (depth, count) = (-(1.0 - fragment.alpha).max(1e-9).ln() * layers, nearest.len() as f64);
-    fragment.alpha * (1.0 + depth / count).powf(-count).max(LEAST_SEEN)
+    let (depth, count) = (-(1.0 - fragment.alpha).max(1.0 / 65535.0).ln() * layers, nearest.len() as f64);
+    (fragment.alpha * (1.0 + depth / count).powf(-count)).max(fragment.alpha.min(LEAST_WEIGHT))
 }
 
 /// What lies before the hair that comes next.
