@@ -327,12 +327,8 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
             last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
         }
         seen_to = -1.0;
-        @if(!few_turns) { recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter])); }
-        @if(few_turns) {
-            // Where a group ends depends on its units: they must not depend on the frame before.
-            recall_cuts(0u);
-            turns = 0u;
-        }
+        recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
+        @if(few_turns) { turns = 0u; }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);
@@ -439,7 +435,10 @@ fn blend_parts(own: Job, lane: u32) {
         atomicMax(&state.tiles[own.tile].hidden, hidden_by());
         if (own.parts & 1u) == 1u {
             // Where a quarter is divided among groups, one of them tells for all.
-            atomicStore(&state.tiles[own.tile].cuts[own.quarter], pack_cuts());
+            var cuts = pack_cuts();
+            // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
+            @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
+            atomicStore(&state.tiles[own.tile].cuts[own.quarter], cuts);
         }
         atomicAnd(&infos[own.tile].waiting, ~(own.parts << (PARTS * own.quarter)));
     }

@@ -5,6 +5,7 @@
 import package::entries::{most_of_a_pixel, ties};
 @if(places)
 import package::places::{FOURS, OWN_FOURS};
+@if(places)
 import package::unit::ENTRIES_OF_A_LANE;
 
 // For each chunk of references its looks, and for each segment that a lane draws the rows and the pixels of a quarter.
