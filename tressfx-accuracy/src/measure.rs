@@ -3,8 +3,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::thread::{Scope, ScopedJoinHandle};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::{Deserialize, Serialize};
 
@@ -54,13 +55,19 @@ impl Measure {
             let words = self.words(groom, scene)?;
             let folder = self.folder(scene)?;
             let reference = self.reference(&folder, &words, backends[0])?;
-            for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
-                bar.set_message(format!("{}, {}, {backend}", scene.name, method.name));
-                let picture = folder.join(format!("{}-{backend}.png", method.name));
-                rows.push(self.row(scene, method, backend, &words, &picture, &reference)?);
-                kept.push(picture.with_extension("json"));
-                bar.inc(1);
-            }
+            let measured = std::thread::scope(|threads| {
+                let mut coming = Vec::new();
+                for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
+                    bar.set_message(format!("{}, {}, {backend}", scene.name, method.name));
+                    let picture = folder.join(format!("{}-{backend}.png", method.name));
+                    kept.push(picture.with_extension("json"));
+                    let asked = Asked { scene, method, backend, words: &words, picture, reference: &reference };
+                    coming.push(self.row(threads, asked)?);
+                    bar.inc(1);
+                }
+                coming.into_iter().map(Coming::row).collect::<Result<Vec<_>>>()
+            });
+            rows.extend(measured?);
         }
         bar.finish_and_clear();
         kept.iter().try_for_each(|path| fs::remove_file(path).with_context(|| path.display().to_string()))?;
@@ -103,29 +110,25 @@ impl Measure {
         Ok(picture)
     }
 
-    fn row(
-        &self,
-        scene: &Scene,
-        method: &Method,
-        backend: &str,
-        words: &[String],
-        picture: &Path,
-        reference: &Path,
-    ) -> Result<Row> {
-        let kept = picture.with_extension("json");
-        let deep = picture.with_extension("16.png");
-        let on = ["--backend".to_owned(), backend.to_owned()];
-        let words = [words, &method.words, &on, &deep_to(&deep)].concat();
+    /// What the run before has measured, or draws the picture; it is compared while the next one is made.
+    fn row<'scope>(&'scope self, threads: &'scope Scope<'scope, '_>, asked: Asked<'scope>) -> Result<Coming<'scope>> {
+        let deep = asked.picture.with_extension("16.png");
+        let on = ["--backend".to_owned(), asked.backend.to_owned()];
+        let words = [asked.words, &asked.method.words, &on, &deep_to(&deep)].concat();
         let program = &self.program.stamp;
-        let earlier = fs::read_to_string(&kept).ok().and_then(|text| serde_json::from_str::<Kept>(&text).ok());
+        let earlier = fs::read_to_string(asked.kept()).ok().and_then(|text| serde_json::from_str::<Kept>(&text).ok());
         if let Some(earlier) = earlier.filter(|kept| (&kept.program, &kept.words) == (program, &words) && !self.fresh) {
-            return Ok(earlier.row);
+            return Ok(Coming::Kept(earlier.row));
         }
-        let stats = self.program.measure(&words, picture)?;
-        let comparison = self.program.compare(&deep, reference)?;
+        let stats = self.program.measure(&words, &asked.picture)?;
+        Ok(Coming::Compared(threads.spawn(move || self.compare(&asked, stats, words, &deep))))
+    }
+
+    fn compare(&self, asked: &Asked, stats: Stats, words: Vec<String>, deep: &Path) -> Result<Row> {
+        let comparison = self.program.compare(deep, asked.reference)?;
         let row = Row {
-            scene: scene.name.clone(),
-            method: method.name.clone(),
+            scene: asked.scene.name.clone(),
+            method: asked.method.name.clone(),
             flip: comparison.flip_mean,
             psnr_db: comparison.psnr_db,
             largest: comparison.max_difference,
@@ -136,9 +139,43 @@ impl Measure {
             backend: stats.backend,
             adapter: stats.adapter,
         };
-        let text = serde_json::to_string(&Kept { program: program.clone(), words, row: row.clone() })?;
+        let kept = asked.kept();
+        let text = serde_json::to_string(&Kept { program: self.program.stamp.clone(), words, row: row.clone() })?;
         fs::write(&kept, text).with_context(|| kept.display().to_string())?;
         Ok(row)
+    }
+}
+
+/// A method on a scene and a backend.
+struct Asked<'a> {
+    scene: &'a Scene,
+    method: &'a Method,
+    backend: &'a str,
+    /// What all pictures of the scene have in common.
+    words: &'a [String],
+    picture: PathBuf,
+    reference: &'a Path,
+}
+
+impl Asked<'_> {
+    /// Where its row is kept.
+    fn kept(&self) -> PathBuf {
+        self.picture.with_extension("json")
+    }
+}
+
+/// A row that is known, or will be when its picture has been compared.
+enum Coming<'scope> {
+    Kept(Row),
+    Compared(ScopedJoinHandle<'scope, Result<Row>>),
+}
+
+impl Coming<'_> {
+    fn row(self) -> Result<Row> {
+        match self {
+            Self::Kept(row) => Ok(row),
+            Self::Compared(thread) => thread.join().map_err(|_| anyhow!("the comparison has panicked"))?,
+        }
     }
 }
 

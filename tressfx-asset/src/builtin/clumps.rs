@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use glam::{Quat, Vec3};
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg32;
+use rayon::prelude::*;
 use tressfx_core::shape::Capsule;
 
 use super::body::Body;
@@ -41,10 +42,9 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
         let (phase, pitch) = (TAU * random.random::<f32>(), 0.85 + 0.3 * random.random::<f32>());
         Clump { root: root.position, axes: axes(&points), points, phase, pitch }
     };
-    let clumps: Vec<Clump> = roots[..count].iter().enumerate().map(clump).collect();
+    let clumps: Vec<Clump> = roots[..count].par_iter().enumerate().map(clump).collect();
     let capsules = body.capsules();
-    let mut all = Vec::with_capacity(roots.len() * vertices);
-    for (index, root) in roots.iter().enumerate() {
+    let strand = |(index, root): (usize, &Root)| {
         let mut random = Pcg32::new(seed, index as u64);
         let own = growth::grow(look, body, root, vertices, &mut random);
         let clump = nearest(&clumps, look, root);
@@ -58,9 +58,9 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
         };
         // A lock on the other side of a shoulder would draw a strand through it: the less it is drawn, the more it goes around.
         let points = PULLS.into_iter().map(|share| finish(share * pull)).find(|points| !is_cut(points, &capsules));
-        all.extend(points.unwrap_or(own).iter().map(Vec3::to_array));
-    }
-    all
+        points.unwrap_or(own).into_iter().map(Vec3::into)
+    };
+    roots.par_iter().enumerate().flat_map_iter(strand).collect()
 }
 
 /// Whether a strand goes through any of these.
