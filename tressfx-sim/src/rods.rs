@@ -28,6 +28,8 @@ impl Standing {
     }
 }
 
+/// Guides that are looked at one after the other, since they need about the same.
+const NEIGHBOURS: usize = 64;
 /// Rods that are held in f64 at the same time; a million would take gigabytes.
 const AT_ONCE: usize = 4096;
 
@@ -49,7 +51,11 @@ impl GpuRods {
         let mut standing = Standing { largest_factor: 1.0, ..Standing::default() };
         for first in (0..guides).step_by(AT_ONCE) {
             let some = first..(first + AT_ONCE).min(guides);
-            let rods: Vec<_> = some.into_par_iter().map(|guide| rod_rest(strands, params, guide)).collect();
+            let neighbours = |some: Vec<usize>| {
+                let mut power = 0;
+                some.into_iter().map(move |guide| rod_rest_near(strands, params, guide, &mut power))
+            };
+            let rods: Vec<_> = some.into_par_iter().chunks(NEIGHBOURS).flat_map_iter(neighbours).collect();
             for (guide, (rest, stands)) in (first..).zip(rods) {
                 standing.count(&rest, stands);
                 let mut set = |vertex: usize, entry: usize, value: Vec4| {
@@ -74,6 +80,11 @@ impl GpuRods {
 
 /// A guide's rod at rest, in the unit of the file, and whether it stands.
 pub(crate) fn rod_rest(strands: &Strands, params: &SimParams, guide: usize) -> (RodRest, bool) {
+    rod_rest_near(strands, params, guide, &mut 0)
+}
+
+/// The same, where it may need about this power, see [`RodRest::stand_near`].
+fn rod_rest_near(strands: &Strands, params: &SimParams, guide: usize, power: &mut i32) -> (RodRest, bool) {
     let vertices = strands.vertices as usize;
     let points = &strands.rest[guide * vertices..(guide + 1) * vertices];
     let held = points.iter().take_while(|point| point.w == 0.0).count().saturating_sub(1);
@@ -87,6 +98,6 @@ pub(crate) fn rod_rest(strands: &Strands, params: &SimParams, guide: usize) -> (
         ..RodStep::default()
     };
     let wanted = rest.clone();
-    let stands = rest.stand(&step, params.sag_free.into());
+    let stands = rest.stand_near(&step, params.sag_free.into(), power);
     if stands { (rest, true) } else { (wanted, false) }
 }

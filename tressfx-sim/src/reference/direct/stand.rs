@@ -31,6 +31,12 @@ impl RodRest {
     /// it is; [`RodRest::stiffening`] says by how much, and its cube root what the bending length is multiplied by. Where `share`
     /// is 0 nothing is made stiffer. Says whether the strand stands.
     pub fn stand(&mut self, step: &RodStep, share: f64) -> bool {
+        self.stand_near(step, share, &mut 0)
+    }
+
+    /// The same, found sooner where `power` is near to the power of [`STIFFER`] that it needs, as that of a strand beside it mostly is. The
+    /// power that it needed is left there.
+    pub(crate) fn stand_near(&mut self, step: &RodStep, share: f64, power: &mut i32) -> bool {
         if share == 0.0 {
             return true;
         }
@@ -40,10 +46,11 @@ impl RodRest {
             self.balance(step, share)
         };
         let stiffer = |power: i32| wanted.stiffening / MARGIN * STIFFER.powi(power);
-        let Some(power) = least_power(|power| stands(stiffer(power))) else {
+        let Some(least) = least_power(*power, |power| stands(stiffer(power))) else {
             return false;
         };
-        stands((stiffer(power) * MARGIN).max(wanted.stiffening))
+        *power = least;
+        stands((stiffer(least) * MARGIN).max(wanted.stiffening))
     }
 
     /// Finds what the joints have to want; `false` where it is not found or the pose is not stable.
@@ -128,17 +135,21 @@ impl RodRest {
     }
 }
 
-/// The least power of [`STIFFER`] at which a strand stands, where it stands at all larger ones too.
-fn least_power(mut stands: impl FnMut(i32) -> bool) -> Option<i32> {
-    let (mut falls, mut power) = (-1, 0);
-    while !stands(power) {
-        if power == LARGEST_POWER {
-            return None;
+/// The least power of [`STIFFER`] at which a strand stands, where it stands at all larger ones too. It is looked for from `guess` on, in steps
+/// that grow.
+fn least_power(guess: i32, mut stands: impl FnMut(i32) -> bool) -> Option<i32> {
+    let (mut falls, mut power) = (-1, LARGEST_POWER + 1);
+    let (mut at, mut step) = (guess.clamp(0, LARGEST_POWER), 1);
+    // Until the least one lies between one that was tried and another, or a limit.
+    while falls < at && at < power {
+        if stands(at) {
+            (power, at) = (at, if falls < 0 { (at - step).max(0) } else { falls });
+        } else {
+            (falls, at) = (at, if power > LARGEST_POWER { (at + step).min(LARGEST_POWER) } else { power });
         }
-        falls = power;
-        power = (2 * power).clamp(1, LARGEST_POWER);
+        step *= 2;
     }
-    while power - falls > 1 {
+    while power - falls > 1 && power <= LARGEST_POWER {
         let middle = falls + (power - falls) / 2;
         if stands(middle) {
             power = middle;
@@ -146,7 +157,7 @@ fn least_power(mut stands: impl FnMut(i32) -> bool) -> Option<i32> {
             falls = middle;
         }
     }
-    Some(power)
+    (power <= LARGEST_POWER).then_some(power)
 }
 
 fn symmetric(m: DMat3) -> DMat3 {
@@ -157,4 +168,26 @@ fn symmetric(m: DMat3) -> DMat3 {
 fn is_positive(m: &DMat3) -> bool {
     let minor = m.x_axis.x * m.y_axis.y - m.y_axis.x * m.x_axis.y;
     m.x_axis.x > 0.0 && minor > 0.0 && m.determinant() > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_power_is_found_from_any_guess() {
+        for least in [0, 1, 2, 19, 20, 21, 199, LARGEST_POWER] {
+            for guess in [-3, 0, 1, 18, 19, 20, 21, 22, 100, 199, LARGEST_POWER, LARGEST_POWER + 9] {
+                let mut tried = 0;
+                let found = least_power(guess, |power| {
+                    tried += 1;
+                    power >= least
+                });
+                assert_eq!(found, Some(least), "from {guess}");
+                assert!(guess != least || tried <= 2, "{tried} for {least}");
+                assert!(tried <= 17, "{tried} for {least} from {guess}");
+            }
+        }
+        assert_eq!([0, 7, LARGEST_POWER].map(|guess| least_power(guess, |_| false)), [None; 3]);
+    }
 }
