@@ -59,7 +59,7 @@ impl TilesDesc {
     pub const FEW_TILES: u32 = 256;
 
     /// The largest [`TilesDesc::max_reference_bytes`].
-    pub const MAX_REFERENCE_BYTES: u64 = 64 << 20;
+    pub const MAX_REFERENCE_BYTES: u64 = 128 << 20;
 
     /// The same with another number of places in a pixel.
     #[must_use]
@@ -107,7 +107,7 @@ impl TilesDesc {
 }
 
 impl Default for TilesDesc {
-    /// Room for 16.7 million references; a pixel is closed when less than 1/1024 passes.
+    /// Room for 33.5 million references, as much as WebGPU gives a binding; a pixel is closed when less than 1/1024 passes.
     fn default() -> Self {
         let (max_reference_bytes, closed_below) = (Self::MAX_REFERENCE_BYTES, 1.0 / 1024.0);
         Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1, few_tiles: None }
@@ -348,7 +348,7 @@ impl TechniqueInstance for Tiles {
         self.kernels.alloc(list, view, &self.memory, Groups::Grid(alloc_grid(view.size)))?;
         self.rounds(list, view, targets.depth)?;
         if skips_hidden {
-            self.memory.clear_queue(list);
+            self.memory.clear_queue(list, view.size);
             self.kernels.reopen(list, view, &self.memory)?;
             let [bin, alloc] = self.memory.groups_again();
             self.kernels.bin(list, view, &self.memory, None, bin)?;

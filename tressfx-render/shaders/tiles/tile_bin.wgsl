@@ -3,6 +3,7 @@
 // code each time, compiled once, so that a compiler cannot round it differently: a bin gets exactly what was counted for it. One
 // thread a vertex, for the segment that begins there.
 
+import package::blocks::{BLOCK_EDGE, block_at, is_hidden_in};
 import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
@@ -16,6 +17,7 @@ import package::tiles::{DISTANCE_MARGIN, FIRST_QUARTER, IS_NEAREST, REACHES_ON, 
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
+@group(0) @binding(13) var<storage, read> blocks: array<u32>;
 
 // Pixels by which a part of a ribbon is taken larger than it is: more than rounding can move a fragment.
 const PIXEL_MARGIN: f32 = 0.02;
@@ -77,6 +79,22 @@ fn quarters_of(span: Span, first: vec2<i32>, second: vec2<i32>, row: i32) -> u32
     return (bits.x | bits.y | bits.z | bits.w) * FIRST_QUARTER;
 }
 
+// Whether a ribbon is hidden in all tiles that it may touch.
+fn is_hidden(ribbon: Ribbon, span: Span) -> bool {
+    let edge = i32(BLOCK_EDGE);
+    let nearest = max(ribbon.nearness.x, ribbon.nearness.y) * (1.0 + DISTANCE_MARGIN);
+    let rows = rows_of(span, vec2(span.first_column, span.last_column));
+    for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
+        for (var row = rows.x / edge; row * edge <= rows.y; row++) {
+            let place = vec2<u32>(select(vec2(column, row), vec2(row, column), span.steep));
+            if !is_hidden_in(blocks[block_at(place)], nearest) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
     let edge = i32(TILE);
     let columns = vec2(max(span.first_column, tile_column * edge), min(span.last_column, tile_column * edge + edge - 1));
@@ -127,6 +145,9 @@ fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
         return;
     }
     let span = span_of(ribbon, line);
+    if is_hidden(ribbon, span) {
+        return;
+    }
     let edge = i32(TILE);
     for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
         bin_column(ribbon, line, span, column, i);

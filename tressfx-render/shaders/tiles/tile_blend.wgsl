@@ -11,7 +11,7 @@ import package::entries::{
     Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
     ties, total, with_one_more,
 };
-import package::fragment::{Fragment, OPAQUE, depth_key, packed_alpha, packed_color};
+import package::fragment::{Fragment, OPAQUE, depth_key, nearness_of, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
 import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
 import package::line::{Line, fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
@@ -23,7 +23,7 @@ import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, groups_of_a_tile, is_cut, nearness_at, slice_distance, tile_columns, tile_count, tiles,
+    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, nearness_at, tile_columns, tile_count, tiles,
 };
 import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
@@ -38,7 +38,7 @@ import package::unit::references_before;
 @if(hair_output)
 import package::entries::sorted_keys;
 @if(hair_output)
-import package::fragment::{FAINT, NOT_FAINT, nearness_of, seen_key};
+import package::fragment::{FAINT, NOT_FAINT, seen_key};
 @if(hair_output)
 import package::mean::largest_alpha;
 
@@ -63,7 +63,7 @@ const KEYS: u32 = 16u;
 
 // Hair is hidden once more if it is farther behind what was seen than this share of it, and of the depth of all hair.
 const SEEN_MARGIN: f32 = 0.25;
-const DEPTH_MARGIN: f32 = 0.01;
+const DEPTH_MARGIN: f32 = 0.003;
 
 // Parts of a quarter of a tile.
 struct Job {
@@ -389,7 +389,7 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         }
         if lane == 0u && atomicLoad(&open) == 0u {
             plan.first = SLICES;
-            seen_to = slice_distance(begin, unit.end);
+            seen_to = distance_of(nearness_of(unit.high));
         }
         empty(lane);
     }
@@ -449,7 +449,7 @@ fn hidden_by() -> u32 {
     if seen_to < 0.0 {
         return NOTHING_HIDDEN;
     }
-    let margin = SEEN_MARGIN * (seen_to - begin) + DEPTH_MARGIN * tiles.depth;
+    let margin = SEEN_MARGIN * max(seen_to - begin, 0.0) + DEPTH_MARGIN * tiles.depth;
     return ~bitcast<u32>(max(nearness_at(seen_to + margin), 0.0));
 }
 

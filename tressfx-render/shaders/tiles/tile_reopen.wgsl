@@ -1,12 +1,14 @@
 // Tiles in which hair behind some nearness was left out, and which let light through to it, are drawn again with all of it. For all other
 // tiles nothing is referred to any more. One thread a tile.
 
+import package::blocks::{block_of, block_word};
 import package::grid::{GROUP, thread_index};
 import package::tiles::{ALLOC_GRID, COUNT_GRID, SLICES, TileInfo, is_cut, tile_count, tiles};
 
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
 @group(0) @binding(7) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(9) var<storage, read_write> grids_again: array<atomic<u32>>;
+@group(0) @binding(13) var<storage, read_write> blocks: array<atomic<u32>>;
 
 // Nothing is as near.
 const NEAREST: f32 = 1e30;
@@ -32,6 +34,7 @@ fn tile_reopen(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
         return;
     }
     infos[tile].farthest = info.scene;
+    atomicMax(&blocks[block_of(tile)], block_word(info.scene));
     for (var slice = 0u; slice < SLICES; slice++) {
         bins[slice * tile_count() + tile] = 0u;
     }

@@ -16,7 +16,8 @@ use crate::shaders::{FRONT, GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<10, 26>([
+const LIBRARY: &[Module] = &with_shared::<11, 27>([
+    ("blocks", include_str!("../../shaders/tiles/blocks.wgsl")),
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     FRONT,
@@ -187,6 +188,7 @@ impl Kernels {
             ("state", memory.counters.of(view.index).into()),
             ("scene_depth", scene_depth.into()),
             ("infos", memory.screen.infos.into()),
+            ("blocks", memory.screen.blocks.into()),
         ];
         self.depth.record(list, (view.index, scene_depth), Groups::Grid(alloc_grid(view.size)), &resources)
     }
@@ -208,6 +210,7 @@ impl Kernels {
             ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
             ("references", memory.references.buffer.into()),
+            ("blocks", memory.screen.blocks.into()),
         ];
         self.bin.record(list, (view.index, round), groups, &resources)
     }
@@ -242,6 +245,7 @@ impl Kernels {
             ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
             ("grids_again", memory.grids_again.into()),
+            ("blocks", memory.screen.blocks.into()),
         ];
         let grid = Grid::for_threads(tile_count(view.size), GROUP);
         self.reopen.record(list, (view.index, ()), Groups::Grid(grid), &resources)

@@ -13,7 +13,7 @@ use super::layout::{MAX_VERTICES, SLICES, TilesUniform, drawn_vertices};
 use crate::counters::ViewCounters;
 use crate::output::Output;
 use crate::renderer::{HEADROOM, times, with_headroom};
-use crate::resolved::{Resolved, storage, tile_count};
+use crate::resolved::{Resolved, TILE, storage, tile_count};
 use crate::strands::SectionDraw;
 use crate::technique::Wanted;
 use crate::usage::is_surplus;
@@ -71,6 +71,9 @@ const AGAIN_BYTES: u64 = 2 * GRID_BYTES;
 
 /// Bytes of what is known of a tile.
 const INFO_BYTES: u64 = 24;
+
+/// Pixels along an edge of a block of tiles, see `blocks.wgsl`.
+const BLOCK_EDGE: u32 = 2 * TILE;
 
 /// Bytes of what is kept of a tile from frame to frame: what its hair has hidden, and where the units of each quarter ended.
 const KEPT_BYTES: u64 = 20;
@@ -154,6 +157,8 @@ pub(crate) struct Screen {
     pub(crate) bins: BufferId,
     /// `TileInfo` a tile.
     pub(crate) infos: BufferId,
+    /// `u32` a block of tiles.
+    pub(crate) blocks: BufferId,
     /// Tiles that have references.
     pub(crate) queue: BufferId,
     /// The colours of the pixels.
@@ -162,11 +167,12 @@ pub(crate) struct Screen {
 
 impl Screen {
     fn new(backend: &mut dyn Backend, size: [u32; 2], slots: u32, output: Output) -> Result<Self> {
-        let [bins, infos, queue] = sizes(size);
+        let [bins, infos, blocks, queue] = sizes(size);
         Ok(Self {
             size,
             bins: storage(backend, "hair.render.bins", bins)?,
             infos: storage(backend, "hair.render.tile_infos", infos)?,
+            blocks: storage(backend, "hair.render.tile_blocks", blocks)?,
             queue: storage(backend, "hair.render.queue", queue)?,
             resolved: Resolved::with_slots(backend, size, slots.min(tile_count(size)), output)?,
         })
@@ -179,14 +185,15 @@ impl Screen {
 
     fn destroy(self, backend: &mut dyn Backend) {
         self.resolved.destroy(backend);
-        [self.bins, self.infos, self.queue].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
+        [self.bins, self.infos, self.blocks, self.queue].into_iter().for_each(|buffer| backend.destroy(buffer.into()));
     }
 }
 
-/// Bytes of bins, infos and queue.
-fn sizes(size: [u32; 2]) -> [u64; 3] {
+/// Bytes of bins, infos, blocks and queue.
+fn sizes(size: [u32; 2]) -> [u64; 4] {
     let tiles = u64::from(tile_count(size));
-    [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, QUEUE_HEADER + 4 * CLASSES * tiles]
+    let blocks: u64 = size.map(|edge| u64::from(edge.div_ceil(BLOCK_EDGE))).iter().product();
+    [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, 4 * blocks, QUEUE_HEADER + 4 * CLASSES * tiles]
 }
 
 /// Bytes of what is kept of a view from frame to frame.
@@ -394,11 +401,12 @@ impl Memory {
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
-        self.clear_queue(list);
+        self.clear_queue(list, size);
     }
 
     /// No tile waits.
-    pub(crate) fn clear_queue(&self, list: &mut PassList) {
+    pub(crate) fn clear_queue(&self, list: &mut PassList, size: [u32; 2]) {
+        list.clear(self.screen.blocks, 0, sizes(size)[2]);
         list.clear(self.screen.queue, 0, QUEUE_HEADER);
         list.clear(self.grids, 0, GRIDS_BYTES);
         list.clear(self.grids_again, 0, AGAIN_BYTES);

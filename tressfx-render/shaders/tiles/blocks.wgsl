@@ -1,0 +1,30 @@
+// Blocks of tiles: most hidden segments are hidden in all tiles of the few blocks that they touch.
+
+import package::tile::TILE;
+import package::tiles::tile_columns;
+
+// Tiles along an edge of a block.
+const BLOCK: u32 = 2u;
+// Pixels along it.
+const BLOCK_EDGE: u32 = BLOCK * TILE;
+// What a block has where no tile of it waits for references.
+const NOTHING_WAITS: u32 = 0u;
+
+fn block_at(place: vec2<u32>) -> u32 {
+    return place.y * ((tile_columns() + BLOCK - 1u) / BLOCK) + place.x;
+}
+
+fn block_of(tile: u32) -> u32 {
+    return block_at(vec2(tile % tile_columns(), tile / tile_columns()) / BLOCK);
+}
+
+// What a tile gives to its block, of which the block has the largest: the complement of the bits of the farthest nearness that is referred to.
+fn block_word(farthest: f32) -> u32 {
+    return ~bitcast<u32>(farthest);
+}
+
+// Whether what is no nearer than this is hidden in all tiles of a block.
+fn is_hidden_in(word: u32, nearness: f32) -> bool {
+    // Numbers that are not negative are in the order of their bits; of a negative one they are larger than all.
+    return bitcast<u32>(nearness) < ~word;
+}
