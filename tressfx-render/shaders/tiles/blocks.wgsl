@@ -4,7 +4,7 @@ import package::tile::TILE;
 import package::tiles::tile_columns;
 
 // Tiles along an edge of a block.
-const BLOCK: u32 = 2u;
+const BLOCK: u32 = 4u;
 // Pixels along it.
 const BLOCK_EDGE: u32 = BLOCK * TILE;
 // What a block has where no tile of it waits for references.

@@ -73,7 +73,7 @@ const AGAIN_BYTES: u64 = 2 * GRID_BYTES;
 const INFO_BYTES: u64 = 24;
 
 /// Pixels along an edge of a block of tiles, see `blocks.wgsl`.
-const BLOCK_EDGE: u32 = 2 * TILE;
+const BLOCK_EDGE: u32 = 4 * TILE;
 
 /// Bytes of what is kept of a tile from frame to frame: what its hair has hidden, and where the units of each quarter ended.
 const KEPT_BYTES: u64 = 20;
