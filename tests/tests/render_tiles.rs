@@ -308,7 +308,8 @@ fn tile_depth_leaves_the_farthest_that_the_scene_shows() {
         *tile = tile.min(nearness.max(0.0));
     }
     let groom = Groom::wavy(20, 4, 1, varied());
-    let [infos] = read(&mut screen, &[&groom], [("hair.render.tile_depth", "infos", 6 * 96)]);
+    let label = "hair.render.tile_depth";
+    let [infos, blocks] = read(&mut screen, &[&groom], [(label, "infos", 6 * 96), (label, "blocks", 6)]);
     let (nearest, nothing) =
         (farthest.iter().copied().fold(0.0, f64::max), farthest.iter().copied().fold(1.0, f64::min));
     assert!(nearest > 0.3 && nothing < 0.03, "some tiles are hidden whole, others are not: {nearest}, {nothing}");
@@ -317,6 +318,17 @@ fn tile_depth_leaves_the_farthest_that_the_scene_shows() {
         assert!((f64::from(scene) - expected).abs() <= 1e-6 * expected, "{scene} is not {expected}");
         assert_eq!(seen, scene, "nothing was hidden before the first frame");
     }
+    assert_eq!(blocks, blocks_of(&infos, |_| true));
+}
+
+/// What the blocks of 4 x 4 tiles have, where these tiles of 12 x 8 wait: the complement of the bits of the farthest that one of them refers to.
+fn blocks_of(infos: &[u32], waits: impl Fn(&[u32]) -> bool) -> Vec<u32> {
+    let mut blocks = vec![0; 6];
+    for (tile, info) in infos.chunks(6).enumerate().filter(|(_, info)| waits(info)) {
+        let block = &mut blocks[tile / 12 / 4 * 3 + tile % 12 / 4];
+        *block = (!info[1]).max(*block);
+    }
+    blocks
 }
 
 /// The tiles that the fragments of each segment lie in, by its first vertex, in f64.
@@ -437,8 +449,8 @@ fn tile_reopen_puts_back_tiles_that_let_light_through() {
     let far = Groom::wavy(300, 16, 8, varied());
     screen.hair(&[&dense, &far]);
     let label = "hair.render.tile_reopen";
-    let names = [(label, "grids_again", 6), (label, "infos", 6 * 96)];
-    let [grids, infos] = read(&mut screen, &[&dense, &far], names);
+    let names = [(label, "grids_again", 6), (label, "infos", 6 * 96), (label, "blocks", 6)];
+    let [grids, infos, blocks] = read(&mut screen, &[&dense, &far], names);
     let counts = |infos: &[u32]| {
         let (seen, scene) = (|info: &[u32]| f32::from_bits(info[1]), |info: &[u32]| f32::from_bits(info[2]));
         let back = infos.chunks(6).filter(|info| seen(info) == scene(info)).count();
@@ -447,8 +459,11 @@ fn tile_reopen_puts_back_tiles_that_let_light_through() {
         back
     };
     assert_eq!((grids, counts(&infos)), (vec![0; 6], 0), "what was hidden is hidden again");
-    let [grids, infos] = read(&mut screen, &[&far], names);
+    assert_eq!(blocks, [0; 6], "no block has a tile that waits");
+    let [grids, infos, blocks] = read(&mut screen, &[&far], names);
     let back = counts(&infos);
     assert!(back > 5 && grids.iter().all(|&groups| groups > 0), "{back} tiles, {grids:?}");
     assert!(infos.chunks(6).all(|info| info[4] == 0), "all of them have been blended by now");
+    let expected = blocks_of(&infos, |info| info[1] == info[2]);
+    assert!(blocks == expected && blocks.iter().any(|&word| word != 0), "{blocks:?}, {expected:?}");
 }
