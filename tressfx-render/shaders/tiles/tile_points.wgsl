@@ -2,7 +2,7 @@
 // draw segments of all of them. Segments outside of the picture, and those behind the opaque scene in all tiles that they may touch, are
 // left out. Also the nearest vertex of each tile. One thread a vertex; a group has a piece of each of several strands.
 
-import package::joint::ROUND;
+import package::joint::{ROUND, tilt_of};
 import package::ribbon::{End, is_sound, on_screen, scale_of};
 import package::screen::view;
 import package::segments::{LARGEST_PIXEL, Vertex, pack_rest};
@@ -74,13 +74,27 @@ fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
     return point_of(end_at(strand, vertex));
 }
 
-fn store(place: u32, strand: Strand, vertex: u32, point: vec4<f32>, leads_on: bool) {
+// How the strand goes on at a vertex of a lane. Where the group has the vertices before and after it, their pixels are known.
+fn tilt_at(strand: Strand, vertex: u32, own_vertex: u32, lane: u32, pieces: Pieces) -> f32 {
+    if vertex == 0u || vertex + 1u == section.lod.vertices {
+        return ROUND;
+    }
+    if own_vertex > 0u && own_vertex < pieces.segments {
+        let before = points[lane - pieces.strands];
+        let middle = points[lane];
+        let after = points[lane + pieces.strands];
+        if is_sound(before.xyz) && is_sound(after.xyz) && min(min(before.w, middle.w), after.w) >= 0.0 {
+            return tilt_of(middle.xy - before.xy, after.xy - middle.xy);
+        }
+    }
     let beside = neighbours_of(strand, vertex);
-    let bend = bend_at(strand, vertex, beside);
-    let tilt = select(tilt_between(bend), ROUND, any(beside == vec2(vertex)));
+    return select(tilt_between(bend_at(strand, vertex, beside)), ROUND, any(beside == vec2(vertex)));
+}
+
+fn store(place: u32, strand: Strand, vertex: u32, point: vec4<f32>, tilt: f32, paint: vec2<u32>, leads_on: bool) {
     let rest = pack_rest(Vertex(point.xyz, abs(point.w), tilt, point.w < 0.0, leads_on));
     vertices[place] = vec4(bitcast<vec3<u32>>(point.xyz), rest);
-    paints[place] = colors[vertex_of(strand, vertex)];
+    paints[place] = paint;
 }
 
 fn note_nearest(point: vec4<f32>) {
@@ -166,7 +180,10 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     let vertex = index % pieces.count * pieces.segments + own_vertex;
     let exists = own_vertex <= pieces.segments && number < section.lod.strands && vertex < section.lod.vertices;
     var point = NOWHERE;
+    var paint: vec2<u32>;
     if exists {
+        // Read before it is known whether the vertex is kept: later, all of the group would wait for it.
+        paint = colors[vertex_of(strand, vertex)];
         point = screen_point(strand, vertex);
         if number % clamp(section.lod.strands / SAMPLES, 1u, MOST_BETWEEN) == 0u && is_sound(point.xyz) {
             note_nearest(point);
@@ -190,7 +207,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
     let is_seen = ((atomicLoad(&seen[own]) >> own_vertex) & 1u) == 1u;
     let leads_on = is_seen && place + 1u < tiles.vertices;
     if place < tiles.vertices {
-        store(place, strand, vertex, point, leads_on);
+        store(place, strand, vertex, point, tilt_at(strand, vertex, own_vertex, lane, pieces), paint, leads_on);
     }
     if is_seen != leads_on {
         atomicAdd(&state.counters.dropped, 1u);
