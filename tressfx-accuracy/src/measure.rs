@@ -56,16 +56,18 @@ impl Measure {
             let folder = self.folder(scene)?;
             let reference = self.reference(&folder, &words, backends[0])?;
             let measured = std::thread::scope(|threads| {
-                let mut coming = Vec::new();
+                let (mut measured, mut coming) = (Vec::new(), None);
                 for (backend, method) in backends.iter().flat_map(|backend| methods.iter().map(move |m| (backend, m))) {
                     bar.set_message(format!("{}, {}, {backend}", scene.name, method.name));
                     let picture = folder.join(format!("{}-{backend}.png", method.name));
                     kept.push(picture.with_extension("json"));
                     let asked = Asked { scene, method, backend, words: &words, picture, reference: &reference };
-                    coming.push(self.row(threads, asked)?);
+                    let before = coming.replace(self.row(threads, asked)?);
+                    measured.extend(before.map(Coming::row).transpose()?);
                     bar.inc(1);
                 }
-                coming.into_iter().map(Coming::row).collect::<Result<Vec<_>>>()
+                measured.extend(coming.map(Coming::row).transpose()?);
+                anyhow::Ok(measured)
             });
             rows.extend(measured?);
         }

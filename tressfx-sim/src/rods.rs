@@ -29,7 +29,7 @@ impl Standing {
 }
 
 /// Guides that are looked at one after the other, since they need about the same.
-const NEIGHBOURS: usize = 64;
+const NEIGHBOURS: usize = 16;
 /// Rods that are held in f64 at the same time; a million would take gigabytes.
 const AT_ONCE: usize = 4096;
 

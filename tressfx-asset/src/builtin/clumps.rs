@@ -44,7 +44,7 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
     };
     let clumps: Vec<Clump> = roots[..count].par_iter().enumerate().map(clump).collect();
     let capsules = body.capsules();
-    let strand = |(index, root): (usize, &Root)| {
+    let strand = |index: usize, root: &Root| {
         let mut random = Pcg32::new(seed, index as u64);
         let own = growth::grow(look, body, root, vertices, &mut random);
         let clump = nearest(&clumps, look, root);
@@ -58,9 +58,13 @@ pub(super) fn grow(look: &Look, body: &Body, roots: &[Root], vertices: usize, se
         };
         // A lock on the other side of a shoulder would draw a strand through it: the less it is drawn, the more it goes around.
         let points = PULLS.into_iter().map(|share| finish(share * pull)).find(|points| !is_cut(points, &capsules));
-        points.unwrap_or(own).into_iter().map(Vec3::into)
+        points.unwrap_or(own)
     };
-    roots.par_iter().enumerate().flat_map_iter(strand).collect()
+    let mut all = vec![[0.0; 3]; roots.len() * vertices];
+    all.par_chunks_mut(vertices).zip(roots).enumerate().for_each(|(index, (points, root))| {
+        points.iter_mut().zip(strand(index, root)).for_each(|(point, grown)| *point = grown.into());
+    });
+    all
 }
 
 /// Whether a strand goes through any of these.

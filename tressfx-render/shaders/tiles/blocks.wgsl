@@ -7,8 +7,6 @@ import package::tiles::tile_columns;
 const BLOCK: u32 = 4u;
 // Pixels along it.
 const BLOCK_EDGE: u32 = BLOCK * TILE;
-// What a block has where no tile of it waits for references.
-const NOTHING_WAITS: u32 = 0u;
 
 fn block_at(place: vec2<u32>) -> u32 {
     return place.y * ((tile_columns() + BLOCK - 1u) / BLOCK) + place.x;
@@ -19,8 +17,9 @@ fn block_of(tile: u32) -> u32 {
 }
 
 // What a tile gives to its block, of which the block has the largest: the complement of the bits of the farthest nearness that is referred to.
+// A block that no tile gave anything to has 0: it hides all.
 fn block_word(farthest: f32) -> u32 {
-    return ~bitcast<u32>(farthest);
+    return select(0xffffffffu, ~bitcast<u32>(farthest), farthest > 0.0);
 }
 
 // Whether what is no nearer than this is hidden in all tiles of a block.

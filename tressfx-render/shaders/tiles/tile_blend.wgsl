@@ -64,6 +64,8 @@ const KEYS: u32 = 16u;
 // Hair is hidden once more if it is farther behind what was seen than this share of it, and of the depth of all hair.
 const SEEN_MARGIN: f32 = 0.25;
 const DEPTH_MARGIN: f32 = 0.003;
+// A distance behind all hair.
+const FARTHEST: f32 = 1e30;
 
 // Parts of a quarter of a tile.
 struct Job {
@@ -389,7 +391,7 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         }
         if lane == 0u && atomicLoad(&open) == 0u {
             plan.first = SLICES;
-            seen_to = distance_of(nearness_of(unit.high));
+            seen_to = distance_of(max(nearness_of(unit.high), 1.0 / FARTHEST));
         }
         empty(lane);
     }
@@ -446,7 +448,7 @@ fn blend_parts(own: Job, lane: u32) {
 
 // What the hair of the quarter hides, as the next frame is told.
 fn hidden_by() -> u32 {
-    if seen_to < 0.0 {
+    if seen_to < 0.0 || seen_to >= FARTHEST {
         return NOTHING_HIDDEN;
     }
     let margin = SEEN_MARGIN * max(seen_to - begin, 0.0) + DEPTH_MARGIN * tiles.depth;

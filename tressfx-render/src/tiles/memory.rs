@@ -31,6 +31,9 @@ pub(crate) const UNIFORMS_OF_A_VIEW: usize = 1 + MAX_ROUNDS as usize;
 /// Rounds in which tiles may be blended.
 pub(crate) const MAX_ROUNDS: u32 = 64;
 
+/// References that all rounds have room for at most: `tile_alloc` counts up to one more, so that what has no room is seen.
+const MOST_COVERED: u32 = (1 << 30) - 1;
+
 /// References that there is room for at least, unless fewer are allowed.
 const LEAST_REFERENCES: u32 = 1 << 16;
 
@@ -126,7 +129,7 @@ impl References {
     /// How many references all rounds have room for. In a round, tiles begin in the first half of the room, so that the last one of them
     /// has the other half for itself.
     pub(crate) fn covered(&self) -> u32 {
-        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.half()) }
+        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.half()).min(MOST_COVERED) }
     }
 
     /// The first reference of a round, and the one after the last with which a tile may begin.
