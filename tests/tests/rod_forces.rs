@@ -147,6 +147,35 @@ fn the_pose_of_the_file_is_the_rest_under_gravity() {
     }
 }
 
+/// A strand of long hair, in micrometres: joints in its middle have to want more than twice the bend that they have.
+#[rustfmt::skip]
+const STRAIGHTENED: [[i32; 3]; 32] = [
+    [0, 0, 0], [-15242, -3247, -6589], [-28160, -12606, -12267], [-37885, -25750, -16660],
+    [-44753, -40843, -19832], [-49506, -56809, -21946], [-52874, -73109, -23164], [-55397, -89492, -23686],
+    [-57381, -105853, -23821], [-58916, -122143, -23953], [-59958, -138338, -24440], [-60443, -154422, -25463],
+    [-60076, -170382, -26491], [-58988, -186236, -27092], [-57602, -201936, -26873], [-56390, -217427, -25480],
+    [-55873, -232701, -22638], [-55872, -247827, -19157], [-55982, -262319, -14113], [-55908, -276605, -8909],
+    [-55444, -289783, -4043], [-54275, -303898, 51], [-52443, -319075, 2218], [-50220, -334148, 2898],
+    [-48014, -349028, 2992], [-46114, -363791, 3252], [-44981, -378645, 4172], [-44744, -393645, 5863],
+    [-45283, -408797, 8087], [-46321, -424118, 10350], [-47472, -439623, 12062], [-48326, -455335, 12730],
+];
+
+#[test]
+fn a_strand_that_its_weight_has_straightened_stays() {
+    let places = STRAIGHTENED.map(|point| DVec3::from_array(point.map(|x| 1e-6 * f64::from(x))));
+    for (rate, rounds) in [(60.0, 2), (120.0, 1), (120.0, 2), (120.0, 16), (240.0, 2)] {
+        let mut rest = RodRest::new(&places, 1);
+        let still = RodStep { rounds, drag: [20.0, 10.0], ..step(1.0 / rate, 0.05) };
+        assert!(rest.stand(&still, 1.0));
+        let groom = rest.positions.clone();
+        let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+        run(&RodStep { wind: DVec3::new(1e-4, 0.0, 1e-4), ..still }, &rest, &mut rod, 0.1);
+        run(&still, &rest, &mut rod, 5.0);
+        let off = rod.positions.iter().zip(&groom).map(|(one, other)| one.distance(*other)).fold(0.0, f64::max);
+        assert!(off < 1e-6, "1 / {rate} s, {rounds} rounds: it has moved by {off:e}");
+    }
+}
+
 #[test]
 fn a_part_of_the_sag_is_a_part_of_gravity() {
     let droop = |share: f64| {
