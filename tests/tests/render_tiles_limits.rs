@@ -5,10 +5,10 @@ mod support;
 use glam::Vec3;
 use glam::camera::rh;
 use tressfx_conformance::render::{Groom, Random, Setup};
-use tressfx_core::backend::DepthOrder;
+use tressfx_core::backend::{DepthOrder, Format};
 use tressfx_core::pass::PassList;
 use tressfx_core::view::{Pose, View};
-use tressfx_render::{Counters, SectionDraw, TilesDesc};
+use tressfx_render::{Counters, HairRenderer, RenderDesc, SectionDraw, TilesDesc};
 
 use support::hair::{endless, is_sound, material, tiles, varied};
 use support::screen;
@@ -64,6 +64,47 @@ fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
                 assert!(first.1.dropped > 0 || *first == seen, "{kind:?}, {few_tiles} few, frame {frame}");
             }
         }
+    }
+}
+
+#[test]
+fn groups_of_any_number_of_lanes_give_the_same_picture() {
+    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
+    let plain = TilesDesc::default();
+    let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true).few_tiles(20)];
+    for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+        let mut frames: Vec<(Vec<u8>, Counters)> = Vec::new();
+        for lanes in [160, 96, 224] {
+            if kind.places > 1 && lanes == 224 {
+                continue;
+            }
+            let setup = |setup: &mut Setup| {
+                (setup.technique, setup.size) = (kind.lanes(lanes).into(), [125, 90]);
+                setup.hair_output = output;
+            };
+            let Some(mut screen) = screen(setup) else { return };
+            for frame in 0..3 {
+                let picture = screen.hair(&grooms.each_ref());
+                screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+                let seen = (picture.bytes.clone(), Counters { wanted: 0, ..picture.counters });
+                if lanes == 160 {
+                    frames.push(seen);
+                } else {
+                    assert!(frames[frame] == seen, "{kind:?}, {lanes} lanes, frame {frame}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_group_has_no_other_number_of_lanes() {
+    let Some(mut screen) = screen(tiles) else { return };
+    for (lanes, places, can_be) in [(0, 1, "96 or 160 or 224"), (224, 4, "96 or 160"), (96, 64, "160")] {
+        let desc = RenderDesc::new([8, 8], Format::Rgba16F).technique(TilesDesc::default().lanes(lanes).places(places));
+        let error = HairRenderer::new(&mut *screen.backend, &desc).err().map(|error| error.to_string());
+        let expected = format!("{lanes} lanes of a group with {places} places in a pixel, there can be {can_be}");
+        assert!(error.as_ref().is_some_and(|error| error.ends_with(&expected)), "{error:?}");
     }
 }
 

@@ -52,11 +52,18 @@ pub struct TilesDesc {
     /// picture, more of the device has work. The picture is the same. Best is about as many as the device can blend at once, each by four
     /// groups of 160 lanes. None: [`TilesDesc::FEW_TILES`], and 0 on a CPU.
     pub few_tiles: Option<u32>,
+    /// Lanes of a group that blends, one of [`TilesDesc::LANES`]: with several places in a pixel not the most, and with 64 not the fewest of them. A group of more lanes has room for more fragments at
+    /// once, but fewer groups run at once. The picture is the same. None: those that are best for as many fragments as pixels had in the frame before, and 160 on
+    /// a CPU.
+    pub lanes: Option<u32>,
 }
 
 impl TilesDesc {
     /// [`TilesDesc::few_tiles`] of a GPU, unless another number is given.
     pub const FEW_TILES: u32 = 256;
+
+    /// How many lanes a group that blends may have.
+    pub const LANES: [u32; 3] = [96, 160, 224];
 
     /// The largest [`TilesDesc::max_reference_bytes`].
     pub const MAX_REFERENCE_BYTES: u64 = 128 << 20;
@@ -85,6 +92,12 @@ impl TilesDesc {
         Self { few_tiles: few_tiles.into(), ..self }
     }
 
+    /// The same with another number of lanes.
+    #[must_use]
+    pub fn lanes(self, lanes: impl Into<Option<u32>>) -> Self {
+        Self { lanes: lanes.into(), ..self }
+    }
+
     /// The same with another end of what is seen.
     #[must_use]
     pub fn closed_below(self, closed_below: f32) -> Self {
@@ -98,6 +111,7 @@ impl TilesDesc {
         let differs = [
             ("another limit of memory", self.max_reference_bytes != other.max_reference_bytes),
             ("another number of places in a pixel", self.places != other.places),
+            ("another number of lanes", self.lanes != other.lanes),
         ];
         match differs.into_iter().find(|(_, differs)| *differs) {
             Some((what, _)) => Err(Error::rule("hair.render.tiles", format!("{what} needs a new renderer"))),
@@ -110,7 +124,7 @@ impl Default for TilesDesc {
     /// Room for 33.5 million references, as much as WebGPU gives a binding; a pixel is closed when less than 1/1024 passes.
     fn default() -> Self {
         let (max_reference_bytes, closed_below) = (Self::MAX_REFERENCE_BYTES, 1.0 / 1024.0);
-        Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1, few_tiles: None }
+        Self { max_reference_bytes, closed_below, skips_hidden: None, places: 1, few_tiles: None, lanes: None }
     }
 }
 
@@ -161,7 +175,7 @@ impl Tiles {
         Ok(Self {
             desc: *desc,
             output,
-            kernels: Kernels::new(backend, output, desc.places)?,
+            kernels: Kernels::new(backend, output, desc)?,
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
             usage: Usage::new(),
@@ -226,10 +240,12 @@ impl Tiles {
 
     /// Looks at how dense hair is. Where it has become dense, what is needed from now on is not what was.
     fn note_density(&mut self, counters: &Counters) {
+        let pixels = f64::from(counters.pixels_with_hair.max(1));
+        self.kernels.choose(f64::from(counters.fragments) / pixels);
         if self.desc.skips_hidden.is_some() {
             return;
         }
-        let density = f64::from(counters.wanted) / f64::from(counters.pixels_with_hair.max(1));
+        let density = f64::from(counters.wanted) / pixels;
         // To look for what is hidden in few tiles takes longer than to draw it.
         let (tiles, few) = (counters.tiles_with_hair, self.few_tiles());
         if !self.is_dense && density > DENSE && tiles > few {

@@ -200,12 +200,18 @@ fn interpolations(backend: &mut NullBackend) -> Result<()> {
     Ok(())
 }
 
-/// The label, and where several kernels have it, the features that are on.
+/// The label, and where several kernels have it, the features that are on, and the constants in which they differ.
 fn file_name(shader: &Shader, all: &[Arc<Shader>]) -> String {
     let mut name = shader.label.to_owned();
-    if all.iter().filter(|other| other.label == shader.label).count() > 1 {
+    let others: Vec<_> = all.iter().filter(|other| other.label == shader.label).collect();
+    if others.len() > 1 {
         for (feature, _) in shader.specialization.features().iter().filter(|(_, on)| *on) {
             name = format!("{name}.{feature}");
+        }
+    }
+    for constant in shader.specialization.constants() {
+        if others.iter().any(|other| !other.specialization.constants().contains(constant)) {
+            name = format!("{name}.{}_{}", constant.0.to_lowercase(), constant.1);
         }
     }
     name

@@ -1,11 +1,12 @@
 // The fragments of a unit, in the memory of a group: found in any order, then put into that of pixels, and painted in that of depth.
 
+import package::constants::LANES;
 import package::fragment::{Fragment, OPAQUE, pack_color};
 @if(places)
 import package::places::{Shares, pack_parts, unpack_parts};
 import package::quarter::PIXELS;
 import package::tiles::VERTEX_MASK;
-import package::unit::{ENTRIES, ENTRIES_OF_A_LANE, LANES};
+import package::unit::{ENTRIES, ENTRIES_OF_A_LANE};
 
 // A source: the first vertex of the segment that leaves the fragment, and above it the pixel.
 const PIXEL_SHIFT: u32 = countOneBits(VERTEX_MASK);

@@ -1,9 +1,9 @@
 // The lanes of a pixel: each blends what its own places see, four of 16, eight of 64. In the end what they have becomes one.
 
+import package::constants::LANES;
 import package::entries::words;
 import package::front::{Front, passes};
 import package::quarter::PIXELS;
-import package::unit::LANES;
 
 @if(places)
 import package::constants::LANES_OF_A_PIXEL;

@@ -6,6 +6,7 @@
 // fragment once. A unit with too many fragments blends nothing and is tried again with fewer of its slices, or a part of the
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
+import package::constants::LANES;
 import package::cuts::{pack_cuts, recall_cuts};
 import package::entries::{
     Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
@@ -25,7 +26,7 @@ import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
     WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, nearness_at, tile_columns, tile_count, tiles,
 };
-import package::unit::{ENTRIES, FIRST_RATE, LANES, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
 @if(places)
 import package::entries::parts_at;
@@ -56,8 +57,9 @@ import package::mean::largest_alpha;
 @group(0) @binding(10) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const NO_TILE: u32 = 0xffffffffu;
-// References that a lane looks at before the group draws those that touch its quarter.
-const LOOKS: u32 = 3u;
+// References that a lane looks at before the group draws those that touch its quarter. (With more memory for them a compiler gives lanes more registers,
+// and fewer lanes run at once.)
+const LOOKS: u32 = select(2u, 1u, LANES < 128u);
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
@@ -81,7 +83,7 @@ struct Job {
 var<workgroup> job: Job;
 var<workgroup> plan: Unit;
 // First vertices of segments that touch the quarter.
-var<workgroup> hits: array<u32, LANES * LOOKS>;
+var<workgroup> hits: array<u32, LANES * (LOOKS + 1u)>;
 var<workgroup> hit_count: atomic<u32>;
 // Nearness of the scene.
 var<workgroup> scene: array<f32, PIXELS>;
@@ -146,10 +148,10 @@ fn key_of(nearness: f32) -> u32 {
 }
 
 // The pixels of a quarter that are the share of one of two or of four lanes, a bit each; all where a lane is alone. Of a row, a column and
-// a slanted line all have about as many.
-fn share_of(number: u32, sharing: u32) -> u32 {
-    let fourth = 0x12481248u >> (QUARTER * number);
-    return select(select(fourth, fourth | (fourth >> 8u), sharing == 2u), 0xffffu, sharing == 1u);
+// a slanted line all have about as many. (`power` is that of two.)
+fn share_of(number: u32, power: u32) -> u32 {
+    let fourth = 0x12481248u >> (QUARTER * (number & ((1u << power) - 1u)));
+    return select(select(fourth, fourth | (fourth >> 8u), power == 1u), 0xffffu, power == 0u);
 }
 
 // The pixels of the quarter, a bit each, in which a segment may leave fragments in a unit.
@@ -234,19 +236,21 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         }
         workgroupBarrier();
         let count = atomicLoad(&hit_count);
-        // A lane goes from pixel to pixel: where there are more lanes than segments, several share one.
-        let sharing = select(select(1u, 2u, 2u * count <= LANES), 4u, 4u * count <= LANES);
-        for (var i = lane; i < count * sharing; i += LANES) {
+        // Those that do not fill all lanes wait for more, in front, until there are no more.
+        let waiting = select(count % LANES, 0u, chunk + LANES * LOOKS >= end);
+        // A lane goes from pixel to pixel: where there are more lanes than segments, two or four share one.
+        let power = select(select(0u, 1u, 2u * count <= LANES), 2u, 4u * count <= LANES);
+        for (var i = lane + (waiting << power); i < count << power; i += LANES) {
             if unit.is_mean == 1u {
-                find_mean(unit, corner, hits[i / sharing], share_of(i % sharing, sharing));
+                find_mean(unit, corner, hits[i >> power], share_of(i, power));
             } else {
-                find(unit, corner, hits[i / sharing], share_of(i % sharing, sharing), &ends_found);
+                find(unit, corner, hits[i >> power], share_of(i, power), &ends_found);
             }
         }
         workgroupBarrier();
         if lane == 0u {
-            atomicStore(&hit_count, 0u);
-            @if(few_turns) { note_chunk(LOOKS); }
+            atomicStore(&hit_count, waiting);
+            @if(few_turns) { note_chunk(LOOKS + 1u); }
         }
         workgroupBarrier();
         @if(few_turns) {

@@ -1,11 +1,11 @@
 // What a group blends at once: a range of depths, from somewhere in a slice to somewhere in the same or in a later one.
 
+import package::constants::LANES;
 import package::cuts::{next_cut, note_cut};
 import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
-// Lanes of a group, and how many fragments it has room for.
-const LANES: u32 = 160u;
+// How many fragments a group has room for.
 const ENTRIES_OF_A_LANE: u32 = 3u;
 const ENTRIES: u32 = ENTRIES_OF_A_LANE * LANES;
 // Above all keys of fragments.

@@ -1,11 +1,12 @@
 //! The kernels of tiles: `hair.render.tile_depth`, `tile_points`, `tile_bin`, `tile_alloc`, `tile_blend` and `tile_reopen`.
 
 use tressfx_core::backend::Backend;
-use tressfx_core::error::{Label, Result};
+use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, Groups, PassList};
 use tressfx_core::shader::{Binding, Kernel, Module, Specialization};
 
+use super::TilesDesc;
 use super::layout::points_grid;
 use super::memory::Memory;
 use crate::bound::Bound;
@@ -33,8 +34,52 @@ const LIBRARY: &[Module] = &with_shared::<11, 27>([
 /// Places that a lane of `tile_blend` blends, unless there are too many.
 const PLACES_OF_A_LANE: u32 = 4;
 
+/// Pixels that a group blends.
+const PIXELS_OF_A_QUARTER: u32 = 16;
+
 /// Lanes of a pixel at most: so many for each of 16 pixels are not more than the group has.
 const MOST_LANES_OF_A_PIXEL: u32 = 8;
+
+/// Fragments that a group blends in the mean, up to which the fewest lanes are best, and up to which more are: of 8,192 and 16,384, and of 32,768 and 65,536 strands,
+/// those between (H200).
+const MOST_FRAGMENTS: [f64; 2] = [400.0, 770.0];
+
+/// Lanes of a group of `tile_blend` at most, where a pixel has more than one place.
+const MOST_LANES_WITH_PLACES: u32 = 160;
+
+/// Lanes of a group of `tile_blend` on a CPU.
+const LANES_ON_A_CPU: u32 = 160;
+
+/// How many lanes a group of `tile_blend` may have, at so many places of a pixel: not fewer than those of it that blend, and not more than there is group memory for where a
+/// fragment takes more of it.
+fn lanes(desc: &TilesDesc, is_cpu: bool) -> Result<Vec<u32>> {
+    let least = PIXELS_OF_A_QUARTER * lanes_of_a_pixel(desc.places);
+    let most = if desc.places == 1 { u32::MAX } else { MOST_LANES_WITH_PLACES };
+    let can_be: Vec<_> = TilesDesc::LANES.into_iter().filter(|lanes| (least..=most).contains(lanes)).collect();
+    match desc.lanes {
+        None if is_cpu => Ok(vec![LANES_ON_A_CPU]),
+        None => Ok(can_be),
+        Some(lanes) if can_be.contains(&lanes) => Ok(vec![lanes]),
+        Some(lanes) => {
+            let can_be = can_be.iter().map(u32::to_string).collect::<Vec<_>>().join(" or ");
+            let what =
+                format!("{lanes} lanes of a group with {} places in a pixel, there can be {can_be}", desc.places);
+            Err(Error::rule("hair.render.tiles", what))
+        }
+    }
+}
+
+/// Which of these numbers of lanes is best for so many fragments a pixel with hair.
+fn best(lanes: &[u32], fragments: f64) -> usize {
+    let of_a_group = fragments * f64::from(PIXELS_OF_A_QUARTER);
+    let best = TilesDesc::LANES[MOST_FRAGMENTS.iter().filter(|most| of_a_group > **most).count()];
+    lanes.iter().position(|lanes| *lanes >= best).unwrap_or(lanes.len() - 1)
+}
+
+/// Lanes that share the places of a pixel.
+fn lanes_of_a_pixel(places: u32) -> u32 {
+    (places / PLACES_OF_A_LANE).clamp(1, MOST_LANES_OF_A_PIXEL)
+}
 
 /// Lanes that share a tile: a row of pixels each in `tile_depth`, a part of the slices in `tile_alloc`.
 const LANES_OF_A_TILE: u32 = 8;
@@ -88,8 +133,11 @@ pub(crate) struct Kernels {
     /// By the round that it stores, or none.
     bin: Pass<Option<u32>>,
     alloc: Pass<()>,
-    /// By the scene and the round.
-    blend: Pass<(TextureId, u32)>,
+    /// By the scene and the round: those with fewer lanes first.
+    blend: Vec<Pass<(TextureId, u32)>>,
+    /// Lanes of a group of each of them, and which of them runs.
+    lanes: Vec<u32>,
+    chosen: usize,
     reopen: Pass<()>,
 }
 
@@ -105,24 +153,36 @@ pub(crate) fn alloc_grid(size: [u32; 2]) -> Grid {
 
 impl Kernels {
     /// At how many places of a pixel light passes for itself is known to `blend` alone, as is what drivers of CPUs do to loops (`turns.wgsl`).
-    pub(crate) fn new(backend: &mut dyn Backend, output: Output, places: u32) -> Result<Self> {
-        let few_turns = backend.caps().is_cpu;
-        let blended = output.specialization().feature("few_turns", few_turns);
-        let blended = at_places(blended, places, (places / PLACES_OF_A_LANE).clamp(1, MOST_LANES_OF_A_PIXEL));
+    pub(crate) fn new(backend: &mut dyn Backend, output: Output, desc: &TilesDesc) -> Result<Self> {
+        let is_cpu = backend.caps().is_cpu;
+        let blended = output.specialization().feature("few_turns", is_cpu);
+        let blended = at_places(blended, desc.places, lanes_of_a_pixel(desc.places));
         let points = ("tile_points", include_str!("../../shaders/tiles/tile_points.wgsl"));
         let depth = ("tile_depth", include_str!("../../shaders/tiles/tile_depth.wgsl"));
         let bin = ("tile_bin", include_str!("../../shaders/tiles/tile_bin.wgsl"));
         let alloc = ("tile_alloc", include_str!("../../shaders/tiles/tile_alloc.wgsl"));
         let blend = ("tile_blend", include_str!("../../shaders/tiles/tile_blend.wgsl"));
         let reopen = ("tile_reopen", include_str!("../../shaders/tiles/tile_reopen.wgsl"));
+        let lanes = lanes(desc, is_cpu)?;
+        let blend = lanes.iter().map(|&lanes| {
+            Pass::specialized(backend, "hair.render.tile_blend", blend, &blended.clone().constant("LANES", lanes))
+        });
+        let blend = blend.collect::<Result<_>>()?;
         Ok(Self {
+            blend,
+            chosen: lanes.len() / 2,
+            lanes,
             points: Pass::specialized(backend, "hair.render.tile_points", points, &output.walk())?,
             depth: Pass::new(backend, "hair.render.tile_depth", depth)?,
             bin: Pass::new(backend, "hair.render.tile_bin", bin)?,
             alloc: Pass::new(backend, "hair.render.tile_alloc", alloc)?,
-            blend: Pass::specialized(backend, "hair.render.tile_blend", blend, &blended)?,
             reopen: Pass::new(backend, "hair.render.tile_reopen", reopen)?,
         })
+    }
+
+    /// From now on groups have as many lanes as are best for so many fragments a pixel with hair.
+    pub(crate) fn choose(&mut self, fragments: f64) {
+        self.chosen = best(&self.lanes, fragments);
     }
 
     pub(crate) fn begin_frame(&mut self) {
@@ -130,7 +190,7 @@ impl Kernels {
         self.depth.bound.begin_frame();
         self.bin.bound.begin_frame();
         self.alloc.bound.begin_frame();
-        self.blend.bound.begin_frame();
+        self.blend.iter_mut().for_each(|blend| blend.bound.begin_frame());
         self.reopen.bound.begin_frame();
     }
 
@@ -139,14 +199,14 @@ impl Kernels {
         self.depth.bound.clear();
         self.bin.bound.clear();
         self.alloc.bound.clear();
-        self.blend.bound.clear();
+        self.blend.iter_mut().for_each(|blend| blend.bound.clear());
         self.reopen.bound.clear();
     }
 
     #[cfg(test)]
     pub(crate) fn shaders(&self) -> [&tressfx_core::shader::Shader; 6] {
-        let Self { points, depth, bin, alloc, blend, reopen } = self;
-        let kernels = [&points.kernel, &depth.kernel, &bin.kernel, &alloc.kernel, &blend.kernel, &reopen.kernel];
+        let Self { points, depth, bin, alloc, blend, reopen, .. } = self;
+        let kernels = [&points.kernel, &depth.kernel, &bin.kernel, &alloc.kernel, &blend[0].kernel, &reopen.kernel];
         kernels.map(|kernel| &*kernel.shader)
     }
 
@@ -273,6 +333,26 @@ impl Kernels {
             ("resolved", memory.screen.resolved.colors.into()),
             ("infos", memory.screen.infos.into()),
         ];
-        self.blend.record(list, (view.index, (scene_depth, round)), memory.blend_groups(), &resources)
+        self.blend[self.chosen].record(list, (view.index, (scene_depth, round)), memory.blend_groups(), &resources)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_more_fragments_the_more_lanes() {
+        let all = lanes(&TilesDesc::default(), false).unwrap();
+        let chosen: Vec<_> = [0.0, 10.0, 33.0, 44.0, 52.0, 1e9].iter().map(|most| all[best(&all, *most)]).collect();
+        assert_eq!(chosen, [96, 96, 160, 160, 224, 224]);
+        let some = lanes(&TilesDesc::default().places(64), false).unwrap();
+        assert_eq!(some, [160], "fewer do not blend 64 places, more have no room for them");
+        let some = lanes(&TilesDesc::default().places(4), false).unwrap();
+        let chosen: Vec<_> = [0.0, 33.0, 52.0].iter().map(|most| some[best(&some, *most)]).collect();
+        assert_eq!(chosen, [96, 160, 160]);
+        let one = lanes(&TilesDesc::default().lanes(96), false).unwrap();
+        assert_eq!(one[best(&one, 52.0)], 96, "what is asked for");
+        assert_eq!(lanes(&TilesDesc::default(), true).unwrap(), [160], "on a CPU");
     }
 }
