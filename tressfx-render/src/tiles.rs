@@ -53,7 +53,7 @@ pub struct TilesDesc {
     /// groups of 160 lanes. None: [`TilesDesc::FEW_TILES`], and 0 on a CPU.
     pub few_tiles: Option<u32>,
     /// Lanes of a group that blends, one of [`TilesDesc::LANES`]: with several places in a pixel not the most, and with 64 not the fewest of them. A group of more lanes has room for more fragments at
-    /// once, but fewer groups run at once. The picture is the same. None: those that are best for as many fragments as pixels had in the frame before, and 160 on
+    /// once, but fewer groups run at once. The picture is the same. None: those that are best for hair as dense as in the frame before, and 160 on
     /// a CPU.
     pub lanes: Option<u32>,
 }
@@ -240,12 +240,11 @@ impl Tiles {
 
     /// Looks at how dense hair is. Where it has become dense, what is needed from now on is not what was.
     fn note_density(&mut self, counters: &Counters) {
-        let pixels = f64::from(counters.pixels_with_hair.max(1));
-        self.kernels.choose(f64::from(counters.fragments) / pixels);
+        let density = f64::from(counters.wanted) / f64::from(counters.pixels_with_hair.max(1));
+        self.kernels.choose(density);
         if self.desc.skips_hidden.is_some() {
             return;
         }
-        let density = f64::from(counters.wanted) / pixels;
         // To look for what is hidden in few tiles takes longer than to draw it.
         let (tiles, few) = (counters.tiles_with_hair, self.few_tiles());
         if !self.is_dense && density > DENSE && tiles > few {

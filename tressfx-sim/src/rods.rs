@@ -101,3 +101,54 @@ fn rod_rest_near(strands: &Strands, params: &SimParams, guide: usize, power: &mu
     let stands = rest.stand_near(&step, params.sag_free.into(), power);
     if stands { (rest, true) } else { (wanted, false) }
 }
+
+#[cfg(test)]
+mod tests {
+    use tressfx_core::asset::{AssetFormat, HairAsset};
+    use tressfx_core::strands::StrandOptions;
+
+    use super::*;
+
+    const VERTICES: usize = 8;
+
+    /// Strands that lean to all sides, from 2 to 40 cm long, soft beside stiff.
+    fn leaning(guides: usize) -> Strands {
+        let points = (0..guides * VERTICES).map(|i| {
+            let (guide, vertex) = (i / VERTICES, (i % VERTICES) as f32 / (VERTICES - 1) as f32);
+            let length = 0.02 + 0.38 * ((guide * 7) % guides) as f32 / guides as f32;
+            let angle = guide as f32;
+            let lean = 0.1 + 0.9 * ((guide * 5) % guides) as f32 / guides as f32;
+            [vertex * length * lean * angle.cos(), vertex * length, vertex * vertex * length * lean * angle.sin()]
+        });
+        let asset = HairAsset::new("leaning", AssetFormat::Builtin, points.collect(), vec![VERTICES as u32; guides]);
+        let options = StrandOptions { metres_per_unit: Some(1.0), ..StrandOptions::default() };
+        Strands::new(&asset, &options).unwrap()
+    }
+
+    /// Where a rod begins to look for its stiffness, and which of them are looked at beside each other, changes nothing of it.
+    #[test]
+    fn the_rods_of_a_section_are_those_of_each_guide_for_itself() {
+        let (strands, params) = (leaning(3 * NEIGHBOURS + 5), SimParams { sag_free: 1.0, ..SimParams::default() });
+        let guides = strands.guides as usize;
+        let rods = GpuRods::new(&strands, &params);
+        let mut standing = Standing { largest_factor: 1.0, ..Standing::default() };
+        let mut stiffenings = std::collections::BTreeSet::new();
+        for guide in 0..guides {
+            let (rest, stands) = rod_rest(&strands, &params, guide);
+            standing.count(&rest, stands);
+            stiffenings.insert(rest.stiffening.to_bits());
+            let at = |vertex: usize, entry: usize| rods.entries[(2 * vertex + entry) * guides + guide];
+            for edge in 0..VERTICES - 1 {
+                assert_eq!(
+                    at(edge, 0).truncate(),
+                    Vec4::from(rest.joints[edge].as_quat()).truncate(),
+                    "guide {guide}, edge {edge}"
+                );
+                assert_eq!(at(edge, 1), Vec4::from(rest.frames[edge].as_quat()), "guide {guide}, edge {edge}");
+            }
+            assert_eq!(at(VERTICES - 1, 0).x, rest.stiffening as f32, "guide {guide}");
+        }
+        assert_eq!(rods.standing, standing);
+        assert!(stiffenings.len() > 4, "neighbours need more than a few powers: {stiffenings:?}");
+    }
+}
