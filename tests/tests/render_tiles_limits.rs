@@ -37,31 +37,31 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
     }
 }
 
+/// Three frames of two grooms: rounds come with the second one, and what was hidden in the one before. None where there is no adapter.
+fn three_frames(technique: TilesDesc, hair_output: bool) -> Option<Vec<(Vec<u8>, Counters)>> {
+    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
+    let mut screen = screen(|setup| {
+        (setup.technique, setup.size, setup.hair_output) = (technique.into(), [125, 90], hair_output);
+    })?;
+    let mut frame = || {
+        let picture = screen.hair(&grooms.each_ref());
+        screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+        (picture.bytes.clone(), Counters { wanted: 0, ..picture.counters })
+    };
+    Some((0..3).map(|_| frame()).collect())
+}
+
 #[test]
 fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
-    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
     let plain = TilesDesc::default();
     let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
     for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
-        let mut frames: Vec<(Vec<u8>, Counters)> = Vec::new();
-        for few_tiles in [0, 20, u32::MAX] {
-            let setup = |setup: &mut Setup| {
-                (setup.technique, setup.size) = (kind.few_tiles(few_tiles).into(), [125, 90]);
-                setup.hair_output = output;
-            };
-            let Some(mut screen) = screen(setup) else { return };
-            // Rounds come with the second frame, and what was hidden in the one before.
-            for frame in 0..3 {
-                let picture = screen.hair(&grooms.each_ref());
-                screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
-                let seen = (picture.bytes.clone(), Counters { wanted: 0, ..picture.counters });
-                if few_tiles == 0 {
-                    frames.push(seen);
-                    continue;
-                }
+        let Some(undivided) = three_frames(kind.few_tiles(0), output) else { return };
+        for few in [20, u32::MAX] {
+            let divided = three_frames(kind.few_tiles(few), output).unwrap();
+            for (frame, (first, seen)) in undivided.iter().zip(&divided).enumerate() {
                 // Which tiles have no room for their references is not said.
-                let first = &frames[frame];
-                assert!(first.1.dropped > 0 || *first == seen, "{kind:?}, {few_tiles} few, frame {frame}");
+                assert!(first.1.dropped > 0 || first == seen, "{kind:?}, {few} few, frame {frame}");
             }
         }
     }
@@ -69,30 +69,13 @@ fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
 
 #[test]
 fn groups_of_any_number_of_lanes_give_the_same_picture() {
-    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
     let plain = TilesDesc::default();
     let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true).few_tiles(20)];
     for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
-        let mut frames: Vec<(Vec<u8>, Counters)> = Vec::new();
-        for lanes in [160, 96, 224] {
-            if kind.places > 1 && lanes == 224 {
-                continue;
-            }
-            let setup = |setup: &mut Setup| {
-                (setup.technique, setup.size) = (kind.lanes(lanes).into(), [125, 90]);
-                setup.hair_output = output;
-            };
-            let Some(mut screen) = screen(setup) else { return };
-            for frame in 0..3 {
-                let picture = screen.hair(&grooms.each_ref());
-                screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
-                let seen = (picture.bytes.clone(), Counters { wanted: 0, ..picture.counters });
-                if lanes == 160 {
-                    frames.push(seen);
-                } else {
-                    assert!(frames[frame] == seen, "{kind:?}, {lanes} lanes, frame {frame}");
-                }
-            }
+        let Some(usual) = three_frames(kind.lanes(160), output) else { return };
+        for lanes in [96, 224].into_iter().filter(|lanes| kind.places == 1 || *lanes == 96) {
+            let others = three_frames(kind.lanes(lanes), output).unwrap();
+            assert!(usual == others, "{kind:?}, {lanes} lanes");
         }
     }
 }
