@@ -33,7 +33,7 @@ import package::entries::parts_at;
 @if(places)
 import package::joined::first_four;
 @if(few_turns)
-import package::turns::{may_go_on, note_chunk, note_unit, turns};
+import package::turns::{may_go_on, none_turned, note_chunk, note_unit};
 @if(few_turns)
 import package::unit::references_before;
 @if(hair_output)
@@ -250,7 +250,7 @@ fn collect(unit: Unit, own: Job, corner: vec2<u32>, lane: u32) {
         workgroupBarrier();
         if lane == 0u {
             atomicStore(&hit_count, waiting);
-            @if(few_turns) { note_chunk(LOOKS + 1u); }
+            @if(few_turns) { note_chunk(LOOKS + 1u, (count - waiting + LANES - 1u) / LANES); }
         }
         workgroupBarrier();
         @if(few_turns) {
@@ -334,7 +334,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
         }
         seen_to = -1.0;
         recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
-        @if(few_turns) { turns = 0u; }
+        @if(few_turns) { none_turned(); }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
         atomicStore(&hairy_pixels, 0u);

@@ -26,20 +26,30 @@ const MOST_TURNS: u32 = select(60000u, 50000u, OWN_FOURS > 1u);
 
 // At most so many in the lane that has the most.
 var<workgroup> turns: u32;
+// Turns of the unit that were counted and not made.
+var<workgroup> unused: u32;
+
+fn none_turned() {
+    turns = 0u;
+    unused = 0u;
+}
 
 fn may_go_on() -> bool {
     return turns < MOST_TURNS;
 }
 
-// One lane comes here, after each chunk of references of which a lane draws so many segments at most. (How many they are depends on the order of references,
-// which is another one in each run: a group would end somewhere else.)
-fn note_chunk(most_segments: u32) {
+// One lane comes here, after each chunk of references of which a lane draws so many segments at most, and of which it drew some. (How many they are
+// depends on the order of references, which is another one in each run: a group would end somewhere else. All of a unit are as many in each run.)
+fn note_chunk(most_segments: u32, segments: u32) {
     turns += TURNS_OF_A_CHUNK + TURNS_OF_A_SEGMENT * most_segments;
+    unused += TURNS_OF_A_SEGMENT * (most_segments - segments);
 }
 
 // One lane comes here, after each unit.
 fn note_unit(is_sorted: bool) {
     turns += TURNS_OF_A_UNIT;
+    turns -= unused;
+    unused = 0u;
     if is_sorted {
         let same = atomicLoad(&ties);
         let most = most_of_a_pixel();
