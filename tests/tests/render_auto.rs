@@ -23,6 +23,9 @@ fn auto() -> AutoDesc {
     AutoDesc::default().dense(8.0).tiles_on_cpu(true)
 }
 
+/// Fragments a pixel that dense hair has more of, but not if it filled all tiles of its bounds.
+const UNSURE: f32 = 26.0;
+
 fn with(technique: impl Into<Technique>) -> impl FnOnce(&mut Setup) {
     let technique = technique.into();
     move |setup| setup.technique = technique
@@ -43,7 +46,7 @@ fn it_changes_when_hair_grows_dense_and_back_and_draws_what_the_chosen_one_draws
     let of_lists = [&sparse, &dense].map(|groom| lists.hair(&[groom]));
     let of_tiles = [&sparse, &dense].map(|groom| tiles.hair(&[groom]));
     assert!(of_lists[1].bytes != of_tiles[1].bytes, "they differ, or this test shows nothing");
-    let Some(mut screen) = screen(with(auto())) else { return };
+    let Some(mut screen) = screen(with(auto().dense(UNSURE))) else { return };
     let mut used = Vec::new();
     for (groom, frames) in [(0, 40), (1, 60), (0, 60), (1, 60)] {
         for _ in 0..frames {
@@ -66,7 +69,7 @@ fn the_technique_that_is_not_used_gives_its_memory_back() {
     let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
     tiles.hair(&[&dense]);
     let Some(lists) = screen(with(PpllDesc::default())) else { return };
-    let Some(mut screen) = screen(with(auto())) else { return };
+    let Some(mut screen) = screen(with(auto().dense(UNSURE))) else { return };
     let empty = screen.renderer.technique_bytes();
     assert_eq!(empty, lists.renderer.technique_bytes(), "tiles are made when they are first needed");
     frame(&mut screen, &dense);
@@ -88,6 +91,22 @@ fn a_density_that_flickers_changes_nothing() {
     for i in 0..120 {
         frame(&mut screen, if i % 20 < 15 { &dense } else { &sparse });
         assert!(!screen.renderer.uses_tiles());
+    }
+}
+
+#[test]
+fn hair_that_is_surely_dense_begins_with_tiles() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
+    let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
+    let [of_lists, of_tiles] = [&mut lists, &mut tiles].map(|screen| screen.hair(&[&groom]));
+    let depth = of_lists.counters.fragments / of_lists.counters.pixels_with_hair;
+    assert!(f64::from(depth) > UNSURE.into(), "{:?}", of_lists.counters);
+    for (dense, expected) in [(8.0, &of_tiles), (UNSURE, &of_lists)] {
+        let Some(mut screen) = screen(with(auto().dense(dense))) else { return };
+        let picture = screen.hair(&[&groom]);
+        assert_eq!(screen.renderer.uses_tiles(), std::ptr::eq(expected, &of_tiles), "{dense} fragments a pixel");
+        assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
     }
 }
 

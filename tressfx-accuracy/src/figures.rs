@@ -96,7 +96,7 @@ impl Row {
     }
 
     /// What drew it: the backend, and the name of the device without the version of its driver.
-    fn device(&self) -> (&str, &str) {
+    pub(crate) fn device(&self) -> (&str, &str) {
         (&self.backend, self.adapter.split(" (").next().unwrap_or_default())
     }
 

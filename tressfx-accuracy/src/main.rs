@@ -12,6 +12,7 @@ mod page;
 mod plot;
 mod program;
 mod scene;
+mod times;
 
 use std::path::{Path, PathBuf};
 
@@ -38,6 +39,12 @@ struct Args {
     /// Measure this scene alone, and others that are named so; the rows of all others stay
     #[arg(long = "scene", value_name = "NAME", conflicts_with_all = ["check", "light", "pages"])]
     scenes: Vec<String>,
+    /// Take run times alone anew: for when a change has left the pictures as they were. Errors stay
+    #[arg(long, conflicts_with_all = ["check", "light", "pages"])]
+    times: bool,
+    /// Of this method alone, and of others that are named so
+    #[arg(long = "method", value_name = "NAME", requires = "times")]
+    methods: Vec<String>,
     /// What runs the passes
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
     device: Device,
@@ -105,7 +112,12 @@ fn main() -> Result<()> {
     }
     let measure = Measure::new(Program::new(&args.program)?, &args.work, extent, args.fresh);
     let scenes = scene::named(scene::scenes(extent), &args.scenes)?;
-    let rows = measure.all(&scenes, &method::methods(extent), args.device.backends())?;
+    let methods = method::named(method::methods(extent), &args.methods)?;
+    if args.times {
+        let run = stored.with_context(|| format!("{}: it holds no {} run", path.display(), extent.name()))?;
+        return write(report, times::anew(&measure, run, &scenes, &methods)?, extent, &args.docs);
+    }
+    let rows = measure.all(&scenes, &methods, args.device.backends())?;
     let mut run = Run { setting: extent.setting(), rows, changes: Vec::new(), note: None };
     match stored {
         Some(stored) if args.check => return check::check(&stored, &run),
@@ -115,11 +127,16 @@ fn main() -> Result<()> {
     if extent == Extent::Light {
         run.changes = change::changes(&Program::new(&args.program)?, &args.work)?;
     }
-    std::fs::create_dir_all(&args.docs).with_context(|| args.docs.display().to_string())?;
-    plot(&run, extent, &args.docs)?;
-    page::write(&run, extent, &args.docs)?;
+    write(report, run, extent, &args.docs)
+}
+
+/// Plots, the page and the file.
+fn write(mut report: Report, run: Run, extent: Extent, docs: &Path) -> Result<()> {
+    std::fs::create_dir_all(docs).with_context(|| docs.display().to_string())?;
+    plot(&run, extent, docs)?;
+    page::write(&run, extent, docs)?;
     *report.run(extent) = Some(run);
-    report.write(&path)?;
-    println!("The figures are in {}", args.docs.display());
+    report.write(&docs.join("accuracy.json"))?;
+    println!("The figures are in {}", docs.display());
     Ok(())
 }

@@ -17,8 +17,8 @@ use crate::scene::Scene;
 /// What is measured with, and where pictures and rows are kept.
 #[derive(Debug)]
 pub(crate) struct Measure {
-    program: Program,
-    work: PathBuf,
+    pub(crate) program: Program,
+    pub(crate) work: PathBuf,
     setting: Setting,
     /// What is judged: where it is light, the reference traces it, and bytes are those of shadows.
     is_light: bool,
@@ -77,7 +77,7 @@ impl Measure {
     }
 
     /// What all pictures of a scene have in common.
-    fn words(&self, groom: &str, scene: &Scene) -> Result<Vec<String>> {
+    pub(crate) fn words(&self, groom: &str, scene: &Scene) -> Result<Vec<String>> {
         let Setting { size, frames, .. } = self.setting;
         let size = format!("{}x{}", size[0], size[1]);
         let camera = scene.camera(&self.program.bounds(groom)?);
@@ -188,7 +188,7 @@ fn deep_to(path: &Path) -> [String; 2] {
 
 /// Of the passes that draw hair in most of the frames. Those of the first frames alone are no part of what a frame takes, nor are those of shadows, which are the same
 /// for all techniques, but where light is judged.
-fn passes(stats: &Stats, is_light: bool) -> Vec<PassTime> {
+pub(crate) fn passes(stats: &Stats, is_light: bool) -> Vec<PassTime> {
     let is_judged =
         |label: &str| label.starts_with("hair.render.") && (is_light || !label.starts_with("hair.render.shadow_"));
     let is_usual = |pass: &&PassStats| is_judged(&pass.label) && 2 * pass.frames > stats.frames;
@@ -205,8 +205,11 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
 
     use super::*;
+    use crate::figures::Run;
+    use crate::figures::tests::row;
     use crate::method::methods;
     use crate::scene::scenes;
+    use crate::times;
 
     /// Notes what it is asked for, and answers as `tressfx` does.
     const ANSWERS: &str = r#"#!/bin/sh
@@ -234,8 +237,8 @@ esac
     struct Rig(PathBuf);
 
     impl Rig {
-        fn new() -> Self {
-            let folder = std::env::temp_dir().join(format!("tressfx-accuracy-{}", std::process::id()));
+        fn new(name: &str) -> Self {
+            let folder = std::env::temp_dir().join(format!("tressfx-accuracy-{name}-{}", std::process::id()));
             fs::create_dir_all(&folder).unwrap();
             Self(folder)
         }
@@ -245,11 +248,14 @@ esac
             fs::set_permissions(self.0.join("tressfx"), fs::Permissions::from_mode(0o755)).unwrap();
         }
 
+        fn measure_with(&self, fresh: bool) -> Measure {
+            Measure::new(Program::new(&self.0.join("tressfx")).unwrap(), &self.0.join("work"), Extent::Quick, fresh)
+        }
+
         /// Two methods on one scene, and how often a reference and a measurement were asked for.
         fn measure(&self, fresh: bool) -> (Result<Vec<Row>>, usize, usize) {
-            let program = Program::new(&self.0.join("tressfx")).unwrap();
-            let measure = Measure::new(program, &self.0.join("work"), Extent::Quick, fresh);
-            let rows = measure.all(&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2], &["wgpu"]);
+            let rows =
+                self.measure_with(fresh).all(&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..2], &["wgpu"]);
             let asked = fs::read_to_string(self.0.join("asked.txt")).unwrap();
             fs::remove_file(self.0.join("asked.txt")).unwrap();
             let count = |word: &str| asked.lines().filter(|line| line.contains(word)).count();
@@ -265,7 +271,7 @@ esac
 
     #[test]
     fn an_interrupted_run_goes_on_and_any_other_measures_anew() {
-        let rig = Rig::new();
+        let rig = Rig::new("anew");
         rig.build(ANSWERS);
         fs::write(rig.0.join("broken"), "").unwrap();
         let (error, references, measured) = rig.measure(false);
@@ -288,5 +294,30 @@ esac
         rig.build(&format!("{ANSWERS}\n# built anew"));
         let (rows, references, measured) = rig.measure(false);
         assert_eq!((rows.unwrap().len(), references, measured), (2, 0, 2));
+    }
+    #[test]
+    fn times_are_taken_anew_where_pictures_are_the_same() {
+        let rig = Rig::new("times");
+        rig.build(ANSWERS);
+        let (scenes, methods) = (&scenes(Extent::Quick)[..1], &methods(Extent::Quick)[..3]);
+        let row = |method: usize, fragments, ms| Row {
+            scene: scenes[0].name.clone(),
+            adapter: "none (an older driver)".into(),
+            passes: vec![PassTime { label: "hair.render.tile_bin".into(), ms }],
+            fragments,
+            dropped: 1,
+            bytes: 5,
+            ..row(&methods[method].name, 0.125, ms)
+        };
+        let stored =
+            vec![row(0, 7, 2.0), row(1, 8, 2.0), row(2, 7, 2.0), Row { scene: "elsewhere".into(), ..row(0, 7, 2.0) }];
+        let run = |rows| Run { setting: Extent::Quick.setting(), rows, changes: Vec::new(), note: None };
+        let anew = times::anew(&rig.measure_with(false), run(stored.clone()), scenes, &methods[..2]).unwrap();
+        let mut now = stored.clone();
+        now[0] = Row { adapter: "none".into(), ..row(0, 7, 1.0) };
+        assert_eq!(anew, run(now), "another picture, another method and another scene stay");
+        let elsewhere = run(vec![Row { adapter: "a GPU".into(), ..stored[0].clone() }]);
+        let refused = times::anew(&rig.measure_with(false), elsewhere, scenes, methods).unwrap_err();
+        assert!(refused.to_string().contains("cannot be compared"), "{refused}");
     }
 }

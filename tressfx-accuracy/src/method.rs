@@ -1,5 +1,7 @@
 //! Methods and their settings, as `tressfx render` takes them.
 
+use anyhow::{Result, bail};
+
 use crate::figures::Extent;
 
 /// What belongs together in a plot: one technique in one variant.
@@ -90,6 +92,18 @@ fn of_family(family: &Family, extent: Extent) -> Vec<Method> {
     ks.iter().map(of).collect()
 }
 
+/// Those that are named, or all where none is.
+///
+/// # Errors
+/// If there is no method of a name.
+pub(crate) fn named(methods: Vec<Method>, names: &[String]) -> Result<Vec<Method>> {
+    if let Some(unknown) = names.iter().find(|&name| methods.iter().all(|method| method.name != *name)) {
+        let known: Vec<_> = methods.iter().map(|method| method.name.as_str()).collect();
+        bail!("there is no method {unknown}; there are {}", known.join(", "));
+    }
+    Ok(methods.into_iter().filter(|method| names.is_empty() || names.contains(&method.name)).collect())
+}
+
 /// Which of [`FAMILIES`] a method belongs to, and its setting in words.
 pub(crate) fn family_of(method: &str) -> Option<(usize, &str)> {
     let (name, setting) = method.rsplit_once("-k").unwrap_or((method, ""));
@@ -111,6 +125,9 @@ mod tests {
             assert_eq!(names.len(), count);
         }
         assert_eq!(methods(Extent::Full).len(), 32);
+        let named = |name: &str| named(methods(Extent::Full), &[name.to_owned()]);
+        assert_eq!(named("tiles-4-places").unwrap(), methods(Extent::Full)[29..30]);
+        assert!(named("tiles-5-places").unwrap_err().to_string().contains("tiles-16-places"));
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
         assert_eq!(family_of("tiles"), Some((6, "")));
     }

@@ -1,8 +1,8 @@
 //! The technique by what was measured: lists while there is room for all fragments and hair is not dense, tiles where it is.
 //!
-//! Lists are the faster ones, and blend what lies behind the nearest fragments as a mean; tiles keep the exact order in memory that
-//! does not grow with the density of hair. On a CPU tiles take several times as long, so that it stays with lists, which are
-//! bounded where there is no room for all. After a new size it begins with lists.
+//! Lists are the faster ones where a pixel has few fragments, and blend what lies behind the nearest ones as a mean; tiles keep the exact order
+//! in memory that does not grow with the density of hair. On a CPU tiles take several times as long, so that it stays with lists, which
+//! are bounded where there is no room for all. It begins with lists, and after a new size again, unless it is sure that hair is dense.
 
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
@@ -16,7 +16,7 @@ use crate::places::check_places;
 use crate::ppll::{Ppll, PpllDesc};
 use crate::predict;
 use crate::renderer::Targets;
-use crate::resolved::Resolved;
+use crate::resolved::{Resolved, TILE};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, Wanted, another_technique};
 use crate::tiles::{self, MAX_VERTICES, Tiles, TilesDesc, Vertices};
@@ -79,9 +79,9 @@ impl AutoDesc {
 }
 
 impl Default for AutoDesc {
-    /// Tiles from 64 fragments a pixel on, where they have become as fast as lists on a GPU (H100), and not on a CPU.
+    /// Tiles from 20 fragments a pixel on, where they have become as fast as lists on a GPU (H200), and not on a CPU.
     fn default() -> Self {
-        Self { lists: PpllDesc::default(), tiles: TilesDesc::default(), dense: 64.0, tiles_on_cpu: false }
+        Self { lists: PpllDesc::default(), tiles: TilesDesc::default(), dense: 20.0, tiles_on_cpu: false }
     }
 }
 
@@ -199,6 +199,13 @@ impl Auto {
         if self.uses_tiles { part < BACK } else { part > 1.0 }
     }
 
+    /// Whether there is no doubt that hair is for tiles: lists would be bounded, or it would be dense even if it filled all tiles that it may touch.
+    fn is_surely_for_tiles(&self, predicted: &Predicted) -> bool {
+        let pixels = (u64::from(TILE * TILE) * predicted.tiles) as f64;
+        predicted.fragments > NO_DOUBT * self.lists.most_unbounded()
+            || predicted.fragments * self.seen > f64::from(self.desc.dense) * pixels
+    }
+
     /// Hands over, with room for what is predicted, so that nothing is dropped.
     fn switch(&mut self, backend: &mut dyn Backend) -> Result<()> {
         let Predicted { fragments, references, tiles, vertices } = self.predicted;
@@ -253,13 +260,15 @@ impl TechniqueInstance for Auto {
         Ok(())
     }
 
-    /// Tiles take over at once where there is no doubt that lists would be bounded.
+    /// Tiles take over at once where there is no doubt.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         self.leave_tiles_for(draws);
-        let may_switch = !self.uses_tiles && self.may_use_tiles(backend);
-        if may_switch && predict::fragments(view, draws) > NO_DOUBT * self.lists.most_unbounded() {
-            self.predicted = Predicted::new(draws).with(view, draws);
-            return self.switch(backend);
+        if !self.uses_tiles && self.may_use_tiles(backend) {
+            let predicted = Predicted::new(draws).with(view, draws);
+            if self.is_surely_for_tiles(&predicted) {
+                self.predicted = predicted;
+                return self.switch(backend);
+            }
         }
         self.active_mut().make_room(backend, view, draws)
     }
