@@ -49,6 +49,29 @@ fn hair_behind_dense_hair_is_not_referred_to() {
 }
 
 #[test]
+fn hair_at_rest_hides_more_until_it_moves() {
+    let Some(mut screens) = screens() else { return };
+    let groom = dense();
+    let [_, all] = both(&mut screens, &[&groom]);
+    let wanted: Vec<u32> = (0..64)
+        .map(|frame| {
+            let picture = screens[0].hair(&[&groom]);
+            assert!(picture.bytes == all.bytes, "frame {frame}");
+            picture.counters.wanted
+        })
+        .collect();
+    let (moving, at_rest) = (wanted[2], wanted[63]);
+    eprintln!("{moving} of {} references, at rest {at_rest}", all.counters.wanted);
+    assert!(at_rest < moving * 9 / 10, "{wanted:?}");
+    // What it hid in a tile alone is seen now, and tiles are drawn again.
+    let aside = Groom { pose: Pose { translation: Vec3::new(0.5, 0.2, 0.0), ..Pose::IDENTITY }, ..dense() };
+    both(&mut screens, &[&aside]);
+    both(&mut screens, &[&groom]);
+    let [_, again] = [(); 2].map(|()| both(&mut screens, &[&groom])[0].counters.wanted);
+    assert!(again > (moving + at_rest) / 2, "{again}");
+}
+
+#[test]
 fn what_comes_into_sight_again_is_drawn() {
     let Some(mut screens) = screens() else { return };
     let groom = dense();

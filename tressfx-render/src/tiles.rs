@@ -151,6 +151,8 @@ pub(crate) struct Tiles {
     is_cpu: bool,
     /// Vertices that the sections of the newest frame have.
     most_vertices: u64,
+    /// Its number, which begins anew behind the greatest.
+    frame: u32,
 }
 
 /// References of a pixel with hair, in the mean of a view, from which on hair is dense.
@@ -183,6 +185,7 @@ impl Tiles {
             is_dense: false,
             is_cpu: backend.caps().is_cpu,
             most_vertices: 0,
+            frame: 0,
         })
     }
 
@@ -340,6 +343,7 @@ impl TechniqueInstance for Tiles {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.most_vertices = layout::vertices(draws);
+        self.frame = self.frame.wrapping_add(1);
         self.usage.begin_frame();
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();

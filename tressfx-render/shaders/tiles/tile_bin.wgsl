@@ -33,13 +33,24 @@ fn refer(bin: u32, reference: u32) {
     }
 }
 
-// Nearness of the farthest and of the nearest fragment that a ribbon may leave in columns.
-fn range_of(ribbon: Ribbon, line: Line, span: Span, columns: vec2<i32>) -> vec2<f32> {
+// How far along a ribbon columns lead, as a share of it.
+struct Reach {
+    // From one column to the next.
+    of_column: f32,
+    // From the middle of the ribbon to the pixels of the column beside it.
+    beside: f32,
+}
+
+fn reach_of(line: Line, span: Span) -> Reach {
     let along = select(line.delta, line.delta.yx, span.steep);
-    // How far along the ribbon the pixels of a column are that lie beside its middle.
-    let beside = (span.half_height + PIXEL_MARGIN) * abs(along.y) / line.square + PIXEL_MARGIN / abs(along.x);
-    let at = (vec2<f32>(columns) + 0.5 - span.start.x) / along.x;
-    let part = clamp(vec2(min(at.x, at.y) - beside, max(at.x, at.y) + beside), vec2(0.0), vec2(1.0));
+    let of_column = 1.0 / along.x;
+    return Reach(of_column, (span.half_height + PIXEL_MARGIN) * abs(along.y) / line.square + PIXEL_MARGIN * abs(of_column));
+}
+
+// Nearness of the farthest and of the nearest fragment that a ribbon may leave in columns.
+fn range_of(ribbon: Ribbon, span: Span, reach: Reach, columns: vec2<i32>) -> vec2<f32> {
+    let at = (vec2<f32>(columns) + 0.5 - span.start.x) * reach.of_column;
+    let part = clamp(vec2(min(at.x, at.y) - reach.beside, max(at.x, at.y) + reach.beside), vec2(0.0), vec2(1.0));
     let ends = mix(ribbon.nearness.xx, ribbon.nearness.yy, part);
     return vec2(min(ends.x, ends.y), max(ends.x, ends.y));
 }
@@ -66,10 +77,12 @@ fn rows_of(span: Span, columns: vec2<i32>) -> vec2<i32> {
     return select(vec2(first, last), NO_ROWS, columns.x > columns.y || first > last);
 }
 
-// The quarters of the tile in a row of tiles that are touched by rows in the first and in the second half of its columns: bits of
-// a reference.
-fn quarters_of(span: Span, first: vec2<i32>, second: vec2<i32>, row: i32) -> u32 {
+// The quarters of a tile that columns of the ribbon touch: bits of a reference.
+fn quarters_of(span: Span, columns: vec2<i32>, tile_column: i32, row: i32) -> u32 {
     let edge = i32(TILE);
+    let middle = tile_column * edge + edge / 2;
+    let first = rows_of(span, vec2(columns.x, min(columns.y, middle - 1)));
+    let second = rows_of(span, vec2(max(columns.x, middle), columns.y));
     let begins = row * edge + vec4(0, edge / 2, 0, edge / 2);
     let firsts = vec4(first.xx, second.xx);
     let lasts = vec4(first.yy, second.yy);
@@ -95,17 +108,14 @@ fn is_hidden(ribbon: Ribbon, span: Span) -> bool {
     return true;
 }
 
-fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: u32) {
+fn bin_column(ribbon: Ribbon, span: Span, reach: Reach, tile_column: i32, vertex: u32) {
     let edge = i32(TILE);
     let columns = vec2(max(span.first_column, tile_column * edge), min(span.last_column, tile_column * edge + edge - 1));
-    let middle = tile_column * edge + edge / 2;
-    let first = rows_of(span, vec2(columns.x, min(columns.y, middle - 1)));
-    let second = rows_of(span, vec2(max(columns.x, middle), columns.y));
-    let rows = vec2(min(first.x, second.x), max(first.y, second.y));
+    let rows = rows_of(span, columns);
     if rows.x > rows.y {
         return;
     }
-    let nearness = range_of(ribbon, line, span, columns);
+    let nearness = range_of(ribbon, span, reach, columns);
     let distances = distances_of(nearness);
     for (var row = rows.x / edge; row <= rows.y / edge; row++) {
         let place = vec2<u32>(select(vec2(tile_column, row), vec2(row, tile_column), span.steep));
@@ -122,7 +132,7 @@ fn bin_column(ribbon: Ribbon, line: Line, span: Span, tile_column: i32, vertex: 
         let last = slice_of(begin, distances.y);
         var reference = 0u;
         if tiles.stores == 1u {
-            reference = vertex | quarters_of(span, first, second, row);
+            reference = vertex | quarters_of(span, columns, tile_column, row);
         }
         var flag = IS_NEAREST;
         for (var slice = slice_of(begin, distances.x); slice <= last; slice += STRIDE) {
@@ -149,7 +159,8 @@ fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
         return;
     }
     let edge = i32(TILE);
+    let reach = reach_of(line, span);
     for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
-        bin_column(ribbon, line, span, column, i);
+        bin_column(ribbon, span, reach, column, i);
     }
 }

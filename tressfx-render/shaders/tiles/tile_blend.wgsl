@@ -24,9 +24,9 @@ import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, nearness_at, tile_columns, tile_count, tiles,
+    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, is_restless, nearness_at, slice_distance, tile_columns, tile_count, tiles,
 };
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_end, last_key, next_unit, references_before, unit_from};
 
 @if(places)
 import package::entries::parts_at;
@@ -34,8 +34,6 @@ import package::entries::parts_at;
 import package::joined::first_four;
 @if(few_turns)
 import package::turns::{may_go_on, none_turned, note_chunk, note_unit};
-@if(few_turns)
-import package::unit::references_before;
 @if(hair_output)
 import package::entries::sorted_keys;
 @if(hair_output)
@@ -63,8 +61,12 @@ const LOOKS: u32 = select(2u, 1u, LANES < 128u);
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
 
-// Hair is hidden once more if it is farther behind what was seen than this share of it, and of the depth of all hair.
-const SEEN_MARGIN: f32 = 0.25;
+// Hair is hidden in the next frame if so many more references of the tile lie before it than were needed to close the quarter, as a share of these: while hair
+// moves, and while it rests. Then it closes again though it has moved. Half of that is enough where it was left out already. And it is farther behind what was seen
+// than a share of the depth of all hair.
+const RESERVE: f32 = 1.0;
+const RESERVE_AT_REST: f32 = 0.5;
+const LEAST_RESERVE: f32 = 4.0;
 const DEPTH_MARGIN: f32 = 0.003;
 // A distance behind all hair.
 const FARTHEST: f32 = 1e30;
@@ -395,6 +397,8 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
         }
         if lane == 0u && atomicLoad(&open) == 0u {
             plan.first = SLICES;
+            plan.end = unit.end;
+            plan.to_reference = unit.to_reference;
             seen_to = distance_of(max(nearness_of(unit.high), 1.0 / FARTHEST));
         }
         empty(lane);
@@ -429,6 +433,10 @@ fn blend_parts(own: Job, lane: u32) {
         atomicAdd(&hairy_pixels, u32(color.a > 0.0));
         atomicAdd(&blended_fragments, blended.fragments);
     }
+    if is_done && lane == LANES - 1u {
+        // While others write their pixels.
+        keep(own);
+    }
     workgroupBarrier();
     if is_done && lane == 0u {
         atomicAdd(&state.counters.pixels_with_hair, atomicLoad(&hairy_pixels));
@@ -438,25 +446,47 @@ fn blend_parts(own: Job, lane: u32) {
                 atomicAdd(&state.counters.dropped, u32(references_before(SLICES) - plan.from_reference) + 1u);
             }
         }
-        atomicMax(&state.tiles[own.tile].hidden, hidden_by());
-        if (own.parts & 1u) == 1u {
-            // Where a quarter is divided among groups, one of them tells for all.
-            var cuts = pack_cuts();
-            // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
-            @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
-            atomicStore(&state.tiles[own.tile].cuts[own.quarter], cuts);
-        }
         atomicAnd(&infos[own.tile].waiting, ~(own.parts << (PARTS * own.quarter)));
     }
 }
 
-// What the hair of the quarter hides, as the next frame is told.
-fn hidden_by() -> u32 {
-    if seen_to < 0.0 || seen_to >= FARTHEST {
-        return NOTHING_HIDDEN;
+// What the next frame is told.
+fn keep(own: Job) {
+    if tiles.skips_hidden == 1u {
+        atomicMax(&state.tiles[own.tile].hidden, hidden_by(own));
     }
-    let margin = SEEN_MARGIN * max(seen_to - begin, 0.0) + DEPTH_MARGIN * tiles.depth;
-    return ~bitcast<u32>(max(nearness_at(seen_to + margin), 0.0));
+    if (own.parts & 1u) == 1u {
+        // Where a quarter is divided among groups, one of them tells for all.
+        var cuts = pack_cuts();
+        // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
+        @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
+        atomicStore(&state.tiles[own.tile].cuts[own.quarter], cuts);
+    }
+}
+
+// The complement of the bits of the nearness behind which the quarter hides all.
+fn hidden_by(own: Job) -> u32 {
+    let distance = hidden_from(own);
+    return select(~bitcast<u32>(max(nearness_at(distance), 0.0)), NOTHING_HIDDEN, distance >= FARTHEST);
+}
+
+// The distance behind which it hides all, FARTHEST where it hides nothing.
+fn hidden_from(own: Job) -> f32 {
+    if seen_to < 0.0 {
+        return FARTHEST;
+    }
+    let reserve = select(RESERVE_AT_REST, RESERVE, is_restless(atomicLoad(&state.reopened)));
+    let needed = plan.to_reference;
+    let wanted = needed + max(reserve * needed, LEAST_RESERVE);
+    let all = references_before(SLICES);
+    var distance = FARTHEST;
+    if all >= wanted {
+        let end = last_end(plan.end, SLICES, wanted) + 1u;
+        distance = select(FARTHEST, slice_distance(begin, end), end < SLICES);
+    } else if is_cut(own.info) && all - needed >= 0.5 * (wanted - needed) {
+        distance = distance_of(own.info.farthest);
+    }
+    return max(distance, seen_to + DEPTH_MARGIN * tiles.depth);
 }
 
 // References that have no room: those behind all rounds, and those of a tile that has more than a round has left for it.

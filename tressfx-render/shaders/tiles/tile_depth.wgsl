@@ -1,12 +1,12 @@
 // What is behind the farthest that the opaque scene shows in a tile is not referred to; nor is, where hair is dense, what was hidden
-// by hair in the frame before, in the tile and in those around it. Whether it is hidden again is seen when the tile is blended. Eight
+// by hair in the frame before, in the tile and, while hair is restless, in those around it. Whether it is hidden again is seen when the tile is blended. Eight
 // lanes a tile, one a row of pixels and one a neighbour.
 
 import package::blocks::{block_of, block_word};
 import package::grid::GROUP;
 import package::screen::{scene_nearness, view};
 import package::tile::TILE;
-import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, tile_columns, tile_count, tiles};
+import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, is_restless, tile_columns, tile_count, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
@@ -56,7 +56,11 @@ fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
         atomicMin(&farthest[own], bitcast<u32>(max(nearness, 0.0)));
     }
     if tile < tile_count() && tiles.skips_hidden == 1u {
-        atomicMax(&hidden[own], max(hidden_at(vec2<i32>(place)), hidden_at(neighbor(place, lane % TILE))));
+        var all = hidden_at(vec2<i32>(place));
+        if is_restless(atomicLoad(&state.reopened)) {
+            all = max(all, hidden_at(neighbor(place, lane % TILE)));
+        }
+        atomicMax(&hidden[own], all);
     }
     workgroupBarrier();
     if lane % TILE == 0u && tile < tile_count() {

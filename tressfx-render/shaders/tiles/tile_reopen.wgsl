@@ -3,8 +3,9 @@
 
 import package::blocks::{block_of, block_word};
 import package::grid::{GROUP, thread_index};
-import package::tiles::{ALLOC_GRID, COUNT_GRID, SLICES, TileInfo, is_cut, tile_count, tiles};
+import package::tiles::{ALLOC_GRID, COUNT_GRID, SLICES, TileInfo, ViewState, is_cut, tile_count, tiles};
 
+@group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
 @group(0) @binding(7) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(9) var<storage, read_write> grids_again: array<atomic<u32>>;
@@ -33,6 +34,7 @@ fn tile_reopen(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
         infos[tile].farthest = NEAREST;
         return;
     }
+    atomicStore(&state.reopened, tiles.frame);
     infos[tile].farthest = info.scene;
     atomicMax(&blocks[block_of(tile)], block_word(info.scene));
     for (var slice = 0u; slice < SLICES; slice++) {

@@ -50,7 +50,9 @@ struct TilesUniform {
     slots: u32,
     // Tiles that are few.
     few: u32,
-    unused: vec2<u32>,
+    // The number of the frame.
+    frame: u32,
+    unused: u32,
     // The grids of `tile_bin` and `tile_alloc`.
     bin_groups: vec4<u32>,
     alloc_groups: vec4<u32>,
@@ -109,7 +111,17 @@ struct KeptTile {
 // What is kept of a view from frame to frame, behind its counters.
 struct ViewState {
     counters: Counters,
+    // The last frame in which a tile was drawn again.
+    reopened: atomic<u32>,
     tiles: array<KeptTile>,
+}
+
+// Frames without a tile that is drawn again after which hair is taken to be at rest. (One such tile costs nearly as much as many: all vertices are looked through.)
+const RESTLESS: u32 = 60u;
+
+// Whether hair moves so that what it hid in a tile in the frame before may be seen there in this one.
+fn is_restless(reopened: u32) -> bool {
+    return tiles.frame - reopened < RESTLESS;
 }
 
 // The complement of the bits of nearness 0.

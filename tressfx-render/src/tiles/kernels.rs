@@ -301,6 +301,7 @@ impl Kernels {
         let resources = [
             ("view", view.uniform),
             ("tiles", memory.uniform(view.index, None)),
+            ("state", memory.counters.of(view.index).into()),
             ("infos", memory.screen.infos.into()),
             ("bins", memory.screen.bins.into()),
             ("grids_again", memory.grids_again.into()),

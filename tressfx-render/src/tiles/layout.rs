@@ -57,8 +57,10 @@ gpu_struct! {
         pub slots: u32,
         /// Tiles that are few: each of them is blended by more groups.
         pub few: u32,
+        /// The number of the frame.
+        pub frame: u32,
         /// Nothing.
-        pub unused: [u32; 2],
+        pub unused: u32,
         /// Groups of `tile_bin`, and nothing.
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
@@ -124,7 +126,8 @@ pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_
         skips_hidden: skips_hidden.into(),
         slots: memory.screen.resolved.slots,
         few: tiles.few_tiles(),
-        unused: [0; 2],
+        frame: tiles.frame,
+        unused: 0,
         bin_groups: padded(memory.bin_grid(draws)),
         alloc_groups: padded(alloc_grid(view.size())),
     };

@@ -78,6 +78,9 @@ const INFO_BYTES: u64 = 24;
 /// Pixels along an edge of a block of tiles, see `blocks.wgsl`.
 const BLOCK_EDGE: u32 = 4 * TILE;
 
+/// Bytes of what is kept of a view from frame to frame: when a tile was drawn again.
+const KEPT_OF_A_VIEW: u64 = 4;
+
 /// Bytes of what is kept of a tile from frame to frame: what its hair has hidden, and where the units of each quarter ended.
 const KEPT_BYTES: u64 = 20;
 
@@ -201,7 +204,7 @@ fn sizes(size: [u32; 2]) -> [u64; 4] {
 
 /// Bytes of what is kept of a view from frame to frame.
 fn kept(size: [u32; 2]) -> u64 {
-    KEPT_BYTES * u64::from(tile_count(size))
+    KEPT_OF_A_VIEW + KEPT_BYTES * u64::from(tile_count(size))
 }
 
 /// Bytes of the largest buffer that a screen of this size takes.
