@@ -9,7 +9,7 @@ use tressfx_core::backend::{Backend, Caps, DepthOrder, Format, TextureDesc};
 use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;
-use tressfx_core::view::{Pose, View};
+use tressfx_core::view::{Pose, View, Viewport};
 use tressfx_render::{
     AutoDesc, Counters, HairRenderer, Lights, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, Targets, Technique,
     TilesDesc, ViewDraw,
@@ -108,6 +108,22 @@ fn hair_that_is_surely_dense_begins_with_tiles() {
         assert_eq!(screen.renderer.uses_tiles(), std::ptr::eq(expected, &of_tiles), "{dense} fragments a pixel");
         assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
     }
+}
+
+#[test]
+fn a_view_in_which_hair_is_surely_dense_leaves_room_for_those_before_it() {
+    let groom = Groom::wavy(12_000, 4, 3, material());
+    let dense = with(auto().dense(250.0));
+    let Some(mut screen) = screen(dense) else { return };
+    let (camera, depth) = ((screen.view.view_matrix(), screen.view.projection_matrix()), screen.view.depth());
+    let of =
+        |offset, size| View::new(camera.0, camera.1, depth, Viewport::part(offset, size, [96, 64]).unwrap()).unwrap();
+    // No strand is thinner than a pixel: where pixels are larger, each has more of them.
+    let views = [of([0, 0], [80, 64]), of([80, 0], [16, 16])];
+    screen.views(&views[..1], &[&groom]);
+    assert!(!screen.renderer.uses_tiles(), "the first view alone is for lists");
+    let picture = screen.views(&views, &[&groom]);
+    assert!(screen.renderer.uses_tiles() && picture.counters.dropped == 0, "{:?}", picture.counters);
 }
 
 #[test]

@@ -40,12 +40,12 @@ struct Args {
     #[arg(long = "scene", value_name = "NAME", conflicts_with_all = ["check", "light", "pages"])]
     scenes: Vec<String>,
     /// Take run times alone anew: for when a change has left the pictures as they were. Errors stay
-    #[arg(long, conflicts_with_all = ["check", "light", "pages"])]
+    #[arg(long, conflicts_with_all = ["check", "light", "pages", "fresh"])]
     times: bool,
     /// Of this method alone, and of others that are named so
     #[arg(long = "method", value_name = "NAME", requires = "times")]
     methods: Vec<String>,
-    /// What runs the passes
+    /// What runs the passes; with --times what ran them before
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
     device: Device,
     /// Measure nothing: write the page and the plots anew from accuracy.json
@@ -106,7 +106,7 @@ fn main() -> Result<()> {
         plot(&run, extent, &args.docs)?;
         return page::write(&run, extent, &args.docs);
     }
-    if let Some(stored) = stored.as_ref().filter(|_| args.check || !args.scenes.is_empty()) {
+    if let Some(stored) = stored.as_ref().filter(|_| args.check || args.times || !args.scenes.is_empty()) {
         // Said before all is measured.
         stored.check_setting(extent.setting())?;
     }

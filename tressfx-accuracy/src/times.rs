@@ -22,9 +22,13 @@ pub(crate) fn anew(measure: &Measure, run: Run, scenes: &[Scene], methods: &[Met
     for row in run.rows {
         bar.inc(1);
         let scene = scenes.iter().find(|scene| scene.name == row.scene);
-        let groom = scene.and_then(|scene| scene.groom.as_deref());
         let method = methods.iter().find(|method| method.name == row.method);
-        let (Some(scene), Some(groom), Some(method)) = (scene, groom, method) else {
+        let (Some(scene), Some(method)) = (scene, method) else {
+            rows.push(row);
+            continue;
+        };
+        let Some(groom) = scene.groom.as_deref() else {
+            eprintln!("skipped: {}, {}: TRESSFX_ASSETS is not set", row.scene, row.method);
             rows.push(row);
             continue;
         };

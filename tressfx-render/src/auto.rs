@@ -108,11 +108,21 @@ impl Predicted {
 
     /// The larger of it and of what a view needs.
     fn with(self, view: &View, draws: &[SectionDraw]) -> Self {
+        self.and(Self {
+            fragments: predict::fragments(view, draws),
+            references: predict::references(view, draws),
+            tiles: predict::tiles(view, draws),
+            vertices: 0,
+        })
+    }
+
+    /// The larger of both.
+    fn and(self, other: Self) -> Self {
         Self {
-            fragments: self.fragments.max(predict::fragments(view, draws)),
-            references: self.references.max(predict::references(view, draws)),
-            tiles: self.tiles.max(predict::tiles(view, draws)),
-            ..self
+            fragments: self.fragments.max(other.fragments),
+            references: self.references.max(other.references),
+            tiles: self.tiles.max(other.tiles),
+            vertices: self.vertices.max(other.vertices),
         }
     }
 }
@@ -139,6 +149,8 @@ pub(crate) struct Auto {
     tiles_can_draw: bool,
     /// The largest of the views.
     predicted: Predicted,
+    /// The same of those for which there is to be room in the next frame.
+    asked: Predicted,
     /// Fragments that lists have measured, of those that were predicted: a body hides the others.
     seen: f64,
 }
@@ -162,6 +174,7 @@ impl Auto {
             settled_at: 0,
             has_surplus: false,
             predicted: Predicted::default(),
+            asked: Predicted::default(),
             seen: 1.0,
         })
     }
@@ -199,7 +212,8 @@ impl Auto {
         if self.uses_tiles { part < BACK } else { part > 1.0 }
     }
 
-    /// Whether there is no doubt that hair is for tiles: lists would be bounded, or it would be dense even if it filled all tiles that it may touch.
+    /// Whether a view is for tiles without a measurement: lists would be bounded, or hair would be dense even if it filled all tiles that it may touch. (It
+    /// fills about half of them at most, which makes up for what a body hides.)
     fn is_surely_for_tiles(&self, predicted: &Predicted) -> bool {
         let pixels = (u64::from(TILE * TILE) * predicted.tiles) as f64;
         predicted.fragments > NO_DOUBT * self.lists.most_unbounded()
@@ -260,13 +274,14 @@ impl TechniqueInstance for Auto {
         Ok(())
     }
 
-    /// Tiles take over at once where there is no doubt.
+    /// Tiles take over at once where there is no doubt, with room for all views that were asked for.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         self.leave_tiles_for(draws);
         if !self.uses_tiles && self.may_use_tiles(backend) {
-            let predicted = Predicted::new(draws).with(view, draws);
-            if self.is_surely_for_tiles(&predicted) {
-                self.predicted = predicted;
+            let of_view = Predicted::new(draws).with(view, draws);
+            self.asked = self.asked.and(of_view);
+            if self.is_surely_for_tiles(&of_view) {
+                self.predicted = self.asked;
                 return self.switch(backend);
             }
         }
@@ -323,6 +338,7 @@ impl TechniqueInstance for Auto {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.frame += 1;
+        self.asked = Predicted::default();
         self.leave_tiles_for(draws);
         if self.frame % FRAMES == 1 {
             self.predicted = Predicted::new(draws);

@@ -9,7 +9,7 @@ mod validation;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick | --light] [--scene NAME]... [--device wgpu|vulkan|both] [--fresh] [--program FILE]
+const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick | --light] [--scene NAME]... [--times [--method NAME]...] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
        | accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known] [--plate]
        cargo xtask stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
 
@@ -23,7 +23,8 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] 
          fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set.
          With --light it judges shadows by light that is traced, into docs/accuracy/light.md.
          With --motion it does the same for the solvers, their sub-steps, rounds and vertices, into docs/accuracy/motion.md; with --known it makes
-         the plots of docs/motion.md, with --plate that of docs/materials.md. --scene measures some scenes alone; the rows of others stay
+         the plots of docs/motion.md, with --plate that of docs/materials.md. --scene measures some scenes alone; the rows of others stay.
+         With --times it takes run times alone anew, where pictures have stayed the same
   stress plays random and hostile cases for an hour, or as long as it is told, and counts what goes wrong, into docs/stress.md; a run
          that was stopped goes on. A few of these cases are part of `test`";
 

@@ -14,6 +14,7 @@ import package::entries::{
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, nearness_of, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
+import package::hidden::{FARTHEST, hidden_by};
 import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
 import package::line::{Line, fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
@@ -23,15 +24,17 @@ import package::screen::{scene_nearness, view};
 import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
-    CLASSES, FIRST_QUARTER, IS_NEAREST, NOTHING_HIDDEN, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, is_restless, nearness_at, slice_distance, tile_columns, tile_count, tiles,
+    CLASSES, FIRST_QUARTER, IS_NEAREST, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
+    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, is_restless, tile_columns, tile_count, tiles,
 };
-import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_end, last_key, next_unit, references_before, unit_from};
+import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
 @if(places)
 import package::entries::parts_at;
 @if(places)
 import package::joined::first_four;
+@if(few_turns)
+import package::unit::references_before;
 @if(few_turns)
 import package::turns::{may_go_on, none_turned, note_chunk, note_unit};
 @if(hair_output)
@@ -60,16 +63,6 @@ const NO_TILE: u32 = 0xffffffffu;
 const LOOKS: u32 = select(2u, 1u, LANES < 128u);
 // Keys by which a fragment may be out of the range of its ends.
 const KEYS: u32 = 16u;
-
-// Hair is hidden in the next frame if so many more references of the tile lie before it than were needed to close the quarter, as a share of these: while hair
-// moves, and while it rests. Then it closes again though it has moved. Half of that is enough where it was left out already. And it is farther behind what was seen
-// than a share of the depth of all hair.
-const RESERVE: f32 = 1.0;
-const RESERVE_AT_REST: f32 = 0.5;
-const LEAST_RESERVE: f32 = 4.0;
-const DEPTH_MARGIN: f32 = 0.003;
-// A distance behind all hair.
-const FARTHEST: f32 = 1e30;
 
 // Parts of a quarter of a tile.
 struct Job {
@@ -453,7 +446,7 @@ fn blend_parts(own: Job, lane: u32) {
 // What the next frame is told.
 fn keep(own: Job) {
     if tiles.skips_hidden == 1u {
-        atomicMax(&state.tiles[own.tile].hidden, hidden_by(own));
+        atomicMax(&state.tiles[own.tile].hidden, hidden_by(own.info, plan, seen_to, is_restless(atomicLoad(&state.reopened))));
     }
     if (own.parts & 1u) == 1u {
         // Where a quarter is divided among groups, one of them tells for all.
@@ -462,31 +455,6 @@ fn keep(own: Job) {
         @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
         atomicStore(&state.tiles[own.tile].cuts[own.quarter], cuts);
     }
-}
-
-// The complement of the bits of the nearness behind which the quarter hides all.
-fn hidden_by(own: Job) -> u32 {
-    let distance = hidden_from(own);
-    return select(~bitcast<u32>(max(nearness_at(distance), 0.0)), NOTHING_HIDDEN, distance >= FARTHEST);
-}
-
-// The distance behind which it hides all, FARTHEST where it hides nothing.
-fn hidden_from(own: Job) -> f32 {
-    if seen_to < 0.0 {
-        return FARTHEST;
-    }
-    let reserve = select(RESERVE_AT_REST, RESERVE, is_restless(atomicLoad(&state.reopened)));
-    let needed = plan.to_reference;
-    let wanted = needed + max(reserve * needed, LEAST_RESERVE);
-    let all = references_before(SLICES);
-    var distance = FARTHEST;
-    if all >= wanted {
-        let end = last_end(plan.end, SLICES, wanted) + 1u;
-        distance = select(FARTHEST, slice_distance(begin, end), end < SLICES);
-    } else if is_cut(own.info) && all - needed >= 0.5 * (wanted - needed) {
-        distance = distance_of(own.info.farthest);
-    }
-    return max(distance, seen_to + DEPTH_MARGIN * tiles.depth);
 }
 
 // References that have no room: those behind all rounds, and those of a tile that has more than a round has left for it.

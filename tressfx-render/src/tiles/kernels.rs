@@ -17,11 +17,12 @@ use crate::shaders::{FRONT, GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<11, 27>([
+const LIBRARY: &[Module] = &with_shared::<12, 28>([
     ("blocks", include_str!("../../shaders/tiles/blocks.wgsl")),
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
     FRONT,
+    ("hidden", include_str!("../../shaders/tiles/hidden.wgsl")),
     ("joined", include_str!("../../shaders/tiles/joined.wgsl")),
     ("mean", include_str!("../../shaders/tiles/mean.wgsl")),
     ("quarter", include_str!("../../shaders/tiles/quarter.wgsl")),
