@@ -94,20 +94,27 @@ fn a_density_that_flickers_changes_nothing() {
     }
 }
 
-#[test]
-fn hair_that_is_surely_dense_begins_with_tiles() {
+/// Holds the first picture of a dense groom against that of tiles or of lists: settings by what lists count of it, and whether they begin with tiles.
+fn begins(cases: impl Fn(&Counters) -> [(AutoDesc, bool); 2]) {
     let groom = Groom::wavy(1500, 16, 3, material());
     let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
     let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
     let [of_lists, of_tiles] = [&mut lists, &mut tiles].map(|screen| screen.hair(&[&groom]));
-    let depth = of_lists.counters.fragments / of_lists.counters.pixels_with_hair;
-    assert!(f64::from(depth) > UNSURE.into(), "{:?}", of_lists.counters);
-    for (dense, expected) in [(8.0, &of_tiles), (UNSURE, &of_lists)] {
-        let Some(mut screen) = screen(with(auto().dense(dense))) else { return };
+    for (desc, uses_tiles) in cases(&of_lists.counters) {
+        let Some(mut screen) = screen(with(desc)) else { return };
         let picture = screen.hair(&[&groom]);
-        assert_eq!(screen.renderer.uses_tiles(), std::ptr::eq(expected, &of_tiles), "{dense} fragments a pixel");
+        assert_eq!(screen.renderer.uses_tiles(), uses_tiles, "{desc:?}");
+        let expected = if uses_tiles { &of_tiles } else { &of_lists };
         assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
     }
+}
+
+#[test]
+fn hair_that_is_surely_dense_begins_with_tiles() {
+    begins(|counters| {
+        assert!(f64::from(counters.fragments / counters.pixels_with_hair) > UNSURE.into(), "{counters:?}");
+        [(auto().dense(8.0), true), (auto().dense(UNSURE), false)]
+    });
 }
 
 #[test]
@@ -138,18 +145,11 @@ fn more_fragments_than_lists_may_hold_are_for_tiles() {
 
 #[test]
 fn hair_that_lists_could_not_hold_begins_with_tiles() {
-    let groom = Groom::wavy(1500, 16, 3, material());
-    let Some(mut lists) = screen(with(PpllDesc::default())) else { return };
-    let Some(mut tiles) = screen(with(TilesDesc::default())) else { return };
-    let [of_lists, of_tiles] = [&mut lists, &mut tiles].map(|screen| screen.hair(&[&groom]));
-    for (room, expected) in [(of_lists.counters.fragments / 8, &of_tiles), (2 * of_lists.counters.fragments, &of_lists)]
-    {
-        let lists = PpllDesc::default().max_node_bytes(16 * u64::from(room));
-        let Some(mut screen) = screen(with(auto().dense(1e6).lists(lists))) else { return };
-        let picture = screen.hair(&[&groom]);
-        assert_eq!(screen.renderer.uses_tiles(), std::ptr::eq(expected, &of_tiles), "room for {room}");
-        assert!(picture.bytes == expected.bytes && picture.counters.dropped == 0, "{:?}", picture.counters);
-    }
+    begins(|counters| {
+        let room = |count: u32| PpllDesc::default().max_node_bytes(16 * u64::from(count));
+        let cases = [(counters.fragments / 8, true), (2 * counters.fragments, false)];
+        cases.map(|(count, uses_tiles)| (auto().dense(1e6).lists(room(count)), uses_tiles))
+    });
 }
 
 #[test]

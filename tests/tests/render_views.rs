@@ -189,8 +189,8 @@ fn fewer_views_take_less_memory() {
         assert!(error.contains(&format!("{none} views")) && error.contains("1 to 8"), "{error}");
     }
     let [one, all] = [1, 8].map(|views| made(views).unwrap().technique_bytes());
-    // Counters, and what is kept of each tile.
-    assert_eq!(all - one, 7 * (32 + 20 * 12 * 8));
+    // Counters, and what is kept of each view and of each tile.
+    assert_eq!(all - one, 7 * (32 + 4 + 20 * 12 * 8));
     let mut renderer = made(2).unwrap();
     let Some(screen) = screen(|_| ()) else { return };
     let (targets, none) = (screen.targets(), Lights::default());
