@@ -3,12 +3,14 @@
 
 import package::unit::{ENTRIES, FILL};
 
-const CUTS: u32 = 3u;
-// A cut is the number of references before it. Of its logarithm so many bits are kept: it is kept up to 1 % too large; 0 is none.
-const CUT_BITS: u32 = 10u;
-const CODES_OF_AN_OCTAVE: f32 = 64.0;
+const CUTS: u32 = 4u;
+// A cut is the number of references before it. Of its logarithm so many bits are kept: it is kept up to 4.5 % too large; 0 is none.
+const CUT_BITS: u32 = 8u;
+const CODES_OF_AN_OCTAVE: f32 = 16.0;
 // A cut this much farther than where a unit begins is not its end, but where it begins.
-const NEAR_CUT: f32 = 1.02;
+const NEAR_CUT: f32 = 1.06;
+// Where a unit closed all pixels, the next frame takes as much of it as was blended, times this.
+const END_RESERVE: f32 = 1.15;
 
 // Of the frame before.
 var<workgroup> cuts: array<f32, CUTS>;
@@ -58,4 +60,11 @@ fn note_cut(to_reference: f32, found: u32) {
         new_cuts[new_count - 1u] = to_reference;
     }
     new_found += found;
+}
+
+// All pixels were closed by such a share of the last unit that was blended, between so many references and so many; 0 where nothing is known of it.
+fn note_end(from_reference: f32, to_reference: f32, share: f32) {
+    if share > 0.0 && new_count <= CUTS {
+        new_cuts[new_count - 1u] = mix(from_reference, to_reference, min(END_RESERVE * share, 1.0));
+    }
 }

@@ -28,6 +28,8 @@ var<workgroup> ties: atomic<u32>;
 var<workgroup> counts: array<atomic<u32>, PIXELS>;
 // Entries of the pixels before, and of all.
 var<workgroup> starts: array<u32, PIXELS + 1u>;
+// Of what a pixel has, the largest share that was blended, as the bits of a number.
+var<workgroup> blended_share: atomic<u32>;
 // The nearest and the farthest key.
 var<workgroup> ends: array<atomic<u32>, 2>;
 
@@ -39,6 +41,7 @@ fn empty(lane: u32) {
     if lane == 0u {
         atomicStore(&total, 0u);
         atomicStore(&ties, 0u);
+        atomicStore(&blended_share, 0u);
         atomicStore(&ends[0], 0xffffffffu);
         atomicStore(&ends[1], 0u);
     }
@@ -261,6 +264,14 @@ fn put_parts(own: vec2<u32>, place: u32) {
 // The places of a pixel's entries: the first, and the one after the last.
 fn places_of(pixel: u32) -> vec2<u32> {
     return vec2(starts[pixel], starts[pixel + 1u]);
+}
+
+// Of a pixel with these places, those before one were blended.
+fn note_blended(places: vec2<u32>, end: u32) {
+    if end > places.x {
+        // Numbers that are not negative are in the order of their bits.
+        atomicMax(&blended_share, bitcast<u32>(f32(end - places.x) / f32(places.y - places.x)));
+    }
 }
 
 // The entries of the pixel that has the most.

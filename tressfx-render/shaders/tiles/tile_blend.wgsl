@@ -7,14 +7,14 @@
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
 import package::constants::LANES;
-import package::cuts::{pack_cuts, recall_cuts};
+import package::cuts::{note_end, pack_cuts, recall_cuts};
 import package::entries::{
-    Painted, add, color_at, empty, ends, entry_at, gather, none_painted, paint, pixel_of, places_of, put_colors, settle_ties, start_of,
-    ties, total, with_one_more,
+    Painted, add, blended_share, color_at, empty, ends, entry_at, gather, none_painted, note_blended, paint, pixel_of, places_of, put_colors,
+    settle_ties, start_of, ties, total, with_one_more,
 };
 import package::fragment::{Fragment, OPAQUE, depth_key, nearness_of, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
-import package::hidden::{FARTHEST, hidden_by};
+import package::hidden::{FARTHEST, HairState, hidden_by};
 import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
 import package::line::{Line, fragment_of_axis, fragment_on, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
@@ -287,7 +287,8 @@ fn paint_all(count: u32, corner: vec2<u32>, lane: u32) {
 fn blend_sorted(front: Front, lane: u32) -> Front {
     var blended = front;
     let places = places_of(pixel_of_lane(lane));
-    for (var i = places.x; i < places.y && passes(blended) >= tiles.closed_below; i++) {
+    var i = places.x;
+    for (; i < places.y && passes(blended) >= tiles.closed_below; i++) {
         let color = color_at(i);
         let alpha = packed_alpha(color);
         @if(!places) { blended = over(blended, packed_color(color), f32(alpha) / OPAQUE, u32(alpha > 0u)); }
@@ -299,6 +300,7 @@ fn blend_sorted(front: Front, lane: u32) -> Front {
             }
         }
     }
+    note_blended(places, i);
     return blended;
 }
 
@@ -392,6 +394,7 @@ fn blend_units(own: Job, corner: vec2<u32>, lane: u32) -> Front {
             plan.first = SLICES;
             plan.end = unit.end;
             plan.to_reference = unit.to_reference;
+            note_end(unit.from_reference, unit.to_reference, bitcast<f32>(atomicLoad(&blended_share)));
             seen_to = distance_of(max(nearness_of(unit.high), 1.0 / FARTHEST));
         }
         empty(lane);
@@ -446,7 +449,8 @@ fn blend_parts(own: Job, lane: u32) {
 // What the next frame is told.
 fn keep(own: Job) {
     if tiles.skips_hidden == 1u {
-        atomicMax(&state.tiles[own.tile].hidden, hidden_by(own.info, plan, seen_to, is_restless(atomicLoad(&state.reopened))));
+        let hair = HairState(is_restless(atomicLoad(&state.reopened)), queue.references > tiles.crowd);
+        atomicMax(&state.tiles[own.tile].hidden, hidden_by(own.info, plan, seen_to, hair));
     }
     if (own.parts & 1u) == 1u {
         // Where a quarter is divided among groups, one of them tells for all.

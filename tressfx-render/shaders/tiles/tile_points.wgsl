@@ -118,6 +118,29 @@ fn margin_between(a: vec4<f32>, b: vec4<f32>) -> f32 {
     return 1.5 * (max(a.w, b.w) * focal + 1.0) + 1.0;
 }
 
+// Whether the opaque scene shows something at a nearness in any of these tiles. Four are looked at together, along the longer side: a lane
+// that looks at one after the other waits for each.
+fn is_before_scene(nearest: f32, low: vec2<i32>, high: vec2<i32>) -> bool {
+    let columns = i32(tile_columns());
+    let size = high - low;
+    let is_wide = size.x >= size.y;
+    let along = select(columns, 1, is_wide);
+    let across = select(1, columns, is_wide);
+    let long = max(size.x, size.y);
+    let short = min(size.x, size.y);
+    let first = low.y * columns + low.x;
+    for (var row = 0; row <= short; row++) {
+        for (var next = 0; next <= long; next += 4) {
+            let places = first + row * across + min(vec4(next) + vec4(0, 1, 2, 3), vec4(long)) * along;
+            let scene = vec4(infos[places.x].scene, infos[places.y].scene, infos[places.z].scene, infos[places.w].scene);
+            if any(vec4(nearest) >= scene) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 // Whether a segment may be seen.
 fn may_be_seen(a: vec4<f32>, b: vec4<f32>) -> bool {
     if !is_sound(a.xyz) || !is_sound(b.xyz) {
@@ -135,15 +158,7 @@ fn may_be_seen(a: vec4<f32>, b: vec4<f32>) -> bool {
     if (high.x - low.x + 1) * (high.y - low.y + 1) > MOST_TILES {
         return true;
     }
-    let nearest = max(a.z, b.z) * (1.0 + DISTANCE_MARGIN);
-    for (var row = low.y; row <= high.y; row++) {
-        for (var column = low.x; column <= high.x; column++) {
-            if nearest >= infos[u32(row) * tile_columns() + u32(column)].scene {
-                return true;
-            }
-        }
-    }
-    return false;
+    return is_before_scene(max(a.z, b.z) * (1.0 + DISTANCE_MARGIN), low, high);
 }
 
 // The vertices of segments that may be seen, a bit each.
@@ -173,8 +188,9 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
                @builtin(local_invocation_index) lane: u32) {
     let pieces = pieces();
     let index = group.y * groups.x + group.x;
-    let own = lane % pieces.strands;
-    let own_vertex = lane / pieces.strands;
+    // Exact: with the half, a quotient is nowhere near a whole number.
+    let own_vertex = u32((f32(lane) + 0.5) / f32(pieces.strands));
+    let own = lane - own_vertex * pieces.strands;
     let number = index / pieces.count * pieces.strands + own;
     let strand = strand_at(number);
     let vertex = index % pieces.count * pieces.segments + own_vertex;

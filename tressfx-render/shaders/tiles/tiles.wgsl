@@ -52,7 +52,8 @@ struct TilesUniform {
     few: u32,
     // The number of the frame.
     frame: u32,
-    unused: u32,
+    // References that are nearly too many for one round.
+    crowd: u32,
     // The grids of `tile_bin` and `tile_alloc`.
     bin_groups: vec4<u32>,
     alloc_groups: vec4<u32>,

@@ -59,8 +59,8 @@ gpu_struct! {
         pub few: u32,
         /// The number of the frame.
         pub frame: u32,
-        /// Nothing.
-        pub unused: u32,
+        /// References that are nearly too many for one round.
+        pub crowd: u32,
         /// Groups of `tile_bin`, and nothing.
         pub bin_groups: [u32; 4],
         /// Groups of `tile_alloc`, and nothing.
@@ -127,7 +127,7 @@ pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_
         slots: memory.screen.resolved.slots,
         few: tiles.few_tiles(),
         frame: tiles.frame,
-        unused: 0,
+        crowd: memory.crowd(),
         bin_groups: padded(memory.bin_grid(draws)),
         alloc_groups: padded(alloc_grid(view.size())),
     };

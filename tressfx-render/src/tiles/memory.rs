@@ -57,6 +57,10 @@ pub(crate) fn is_tight(room: u64, needed: u64) -> bool {
     times(needed, TIGHT) > room
 }
 
+/// With more references than this share of what may be predicted for one round, more of hidden hair is left out: a reference too many costs
+/// little, another round much.
+const CROWD: f64 = 0.75;
+
 /// Bytes of a grid of groups.
 const GRID_BYTES: u64 = 12;
 
@@ -255,6 +259,11 @@ impl Memory {
     /// What may be predicted for one round, before room is added for what the next frame may need.
     pub(crate) fn largest_round(&self) -> f64 {
         f64::from(self.most_references) / HEADROOM
+    }
+
+    /// So many references are nearly too many for one round.
+    pub(crate) fn crowd(&self) -> u32 {
+        (CROWD * self.largest_round()) as u32
     }
 
     pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) -> Result<()> {
