@@ -6,6 +6,8 @@
 mod change;
 mod check;
 mod figures;
+mod growth;
+mod growth_plot;
 mod measure;
 mod method;
 mod page;
@@ -20,6 +22,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Parser, ValueEnum};
 
 use crate::figures::{Extent, Report, Run};
+use crate::growth::Growth;
 use crate::measure::Measure;
 use crate::program::Program;
 
@@ -33,6 +36,9 @@ struct Args {
     /// Fewer scenes and settings, in small pictures
     #[arg(long)]
     quick: bool,
+    /// Measure how time grows with the number of strands, in place of errors; with --pages only write its page and plot anew
+    #[arg(long, conflicts_with_all = ["check", "quick", "light", "scenes", "times", "fresh"])]
+    growth: bool,
     /// Judge shadows in place of techniques, at rest and in motion, by light that is traced
     #[arg(long, conflicts_with = "quick")]
     light: bool,
@@ -90,6 +96,9 @@ fn plot(run: &Run, extent: Extent, docs: &Path) -> Result<()> {
 
 fn main() -> Result<()> {
     let args = Args::parse();
+    if args.growth {
+        return grow(&args);
+    }
     let extent = match (args.quick, args.light) {
         (_, true) => Extent::Light,
         (true, _) => Extent::Quick,
@@ -128,6 +137,18 @@ fn main() -> Result<()> {
         run.changes = change::changes(&Program::new(&args.program)?, &args.work)?;
     }
     write(report, run, extent, &args.docs)
+}
+
+/// How time grows with the number of strands; of both backends, on the first.
+fn grow(args: &Args) -> Result<()> {
+    let growth = match args.pages {
+        true => Growth::read(&args.docs.join("growth.json"))?,
+        false => growth::measure(&Program::new(&args.program)?, args.device.backends()[0], &args.work)?,
+    };
+    std::fs::create_dir_all(&args.docs).with_context(|| args.docs.display().to_string())?;
+    growth::write(&growth, &args.docs)?;
+    println!("The figures are in {}", args.docs.display());
+    Ok(())
 }
 
 /// Plots, the page and the file.

@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (940, 480);
 const LEGEND: i32 = 690;
 
 /// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey and a brown are added).
-const COLORS: [RGBColor; FAMILIES.len()] = [
+pub(crate) const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(0, 114, 178),
     RGBColor(86, 180, 233),
     RGBColor(184, 172, 20),

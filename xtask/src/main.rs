@@ -9,7 +9,7 @@ mod validation;
 
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick | --light] [--scene NAME]... [--times [--method NAME]...] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
+const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] [--quick | --light | --growth] [--scene NAME]... [--times [--method NAME]...] [--device wgpu|vulkan|both] [--fresh] [--program FILE]
        | accuracy --motion [--check] [--quick] [--device wgpu|vulkan] [--pages] [--known] [--plate]
        cargo xtask stress [--hours H] [--seed N] [--backend wgpu|vulkan|both] [--solver direct|tressfx|both] [--case SEED] [--fresh]
 
@@ -21,7 +21,8 @@ const USAGE: &str = "usage: cargo xtask demo | test | docs | accuracy [--check] 
   accuracy
          measures the error of each technique against the reference renderer, and its time, into docs/accuracy; with --check it
          fails where an error has grown. With --quick it takes minutes. Real grooms are measured too if TRESSFX_ASSETS is set.
-         With --light it judges shadows by light that is traced, into docs/accuracy/light.md.
+         With --light it judges shadows by light that is traced, into docs/accuracy/light.md; with --growth it measures
+         how time grows with the number of strands, into docs/accuracy/growth.md.
          With --motion it does the same for the solvers, their sub-steps, rounds and vertices, into docs/accuracy/motion.md; with --known it makes
          the plots of docs/motion.md, with --plate that of docs/materials.md. --scene measures some scenes alone; the rows of others stay.
          With --times it takes run times alone anew, where pictures have stayed the same
