@@ -44,8 +44,8 @@ fn hair_behind_dense_hair_is_not_referred_to() {
         let [picture, _] = both(&mut screens, &[&groom]);
         let (some, all) = (picture.counters.wanted, all.counters.wanted);
         eprintln!("{some} of {all}");
-        // The second frame is the first one whose units end where those of the frame before did.
-        assert!(some < all * if frame == 2 { 49 } else { 45 } / 50, "{some} of {all}");
+        // The first frame tells the next one where units end; what is hidden behind such units is left out in the second one, and less of it is at first.
+        assert!(some < all * if frame == 2 { 97 } else { 90 } / 100, "{frame}: {some} of {all}");
     }
 }
 
@@ -122,14 +122,13 @@ fn where_references_are_many_for_their_room_more_is_left_out() {
     let first = narrow.hair(&[&groom]);
     narrow.renderer.grow_to_measured(&mut *narrow.backend, &first.counters).unwrap();
     roomy.hair(&[&groom]);
-    let mut wanted = [0, 0];
-    for _ in 0..6 {
+    for frame in 1..10 {
         let pictures = [&mut roomy, &mut narrow].map(|screen| screen.hair(&[&groom]));
         assert!(pictures.iter().all(|picture| picture.bytes == all.bytes && picture.counters.dropped == 0));
-        wanted = pictures.map(|picture| picture.counters.wanted);
+        let wanted = pictures.map(|picture| picture.counters.wanted);
+        eprintln!("{wanted:?} of {}", all.counters.wanted);
+        assert!(frame < 3 || wanted[1] < wanted[0] * 9 / 10, "{frame}: {wanted:?}");
     }
-    eprintln!("{wanted:?} of {}", all.counters.wanted);
-    assert!(wanted[1] < wanted[0] * 9 / 10, "{wanted:?}");
 }
 
 #[test]

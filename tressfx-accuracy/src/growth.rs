@@ -52,9 +52,9 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// Milliseconds of a frame's hair.
+    /// Milliseconds of a frame's hair; 0 where the device cannot time passes.
     pub(crate) fn ms(&self) -> f64 {
-        self.passes.iter().map(|pass| pass.ms).sum()
+        self.passes.iter().fold(0.0, |sum, pass| sum + pass.ms)
     }
 }
 

@@ -1,12 +1,14 @@
-// Where the units of a quarter ended in the frame before. What hair moves by in a frame changes little of how many fragments the nearest references
+// Where the units of a quarter ended in the frame before, and where the one that closed it need not have gone on. What hair moves by in a frame changes little of how many fragments the nearest references
 // leave, so that units that end behind as many again fit the list. One that does not is divided, as where nothing is known.
 
 import package::unit::{ENTRIES, FILL};
 
 const CUTS: u32 = 4u;
-// A cut is the number of references before it. Of its logarithm so many bits are kept: it is kept up to 4.5 % too large; 0 is none.
+// A cut is the number of references before it. Of the logarithm of that and one so many bits are kept: it is kept up to 4.5 % too large; 0 is none.
 const CUT_BITS: u32 = 8u;
 const CODES_OF_AN_OCTAVE: f32 = 16.0;
+// A code may be rounded by so much: a cut that is met again must not become larger in each frame.
+const CODE_MARGIN: f32 = 0.05;
 // A cut this much farther than where a unit begins is not its end, but where it begins.
 const NEAR_CUT: f32 = 1.06;
 // Where a unit closed all pixels, the next frame takes as much of it as was blended, times this.
@@ -34,7 +36,7 @@ fn recall_cuts(packed: u32) {
 fn pack_cuts() -> u32 {
     var packed = 0u;
     for (var i = 0u; i < CUTS; i++) {
-        let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE);
+        let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE - CODE_MARGIN);
         packed |= min(u32(code), (1u << CUT_BITS) - 1u) << (CUT_BITS * i);
     }
     return packed;
@@ -62,7 +64,8 @@ fn note_cut(to_reference: f32, found: u32) {
     new_found += found;
 }
 
-// All pixels were closed by such a share of the last unit that was blended, between so many references and so many; 0 where nothing is known of it.
+// The last unit that was blended closed all pixels. `share` is the part of its fragments that this took, 0 where that is not known. The cut moves to there, with a
+// reserve.
 fn note_end(from_reference: f32, to_reference: f32, share: f32) {
     if share > 0.0 && new_count <= CUTS {
         new_cuts[new_count - 1u] = mix(from_reference, to_reference, min(END_RESERVE * share, 1.0));

@@ -10,7 +10,7 @@ const RESERVE_AT_REST: f32 = 0.5;
 const LEAST_RESERVE: f32 = 4.0;
 // It is enough to have this share of them before what was left out already.
 const KEPT_RESERVE: f32 = 0.5;
-// Where references are many, it is enough that what is hidden is farther behind what was seen than this share of it.
+// Where references are many, hair is hidden from here on: so far behind the depth that was seen, as a share of it.
 const CROWD_MARGIN: f32 = 0.25;
 // What is hidden is farther behind what was seen than this share of the depth of all hair.
 const DEPTH_MARGIN: f32 = 0.003;
@@ -44,10 +44,12 @@ fn hidden_from(info: TileInfo, closed: Unit, seen_to: f32, hair: HairState) -> f
         // More of it, not all: all hair of the tile would cost much, and be left out again in the next frame.
         distance = distance_of(info.farthest) + seen;
     }
-    if hair.is_crowded {
+    if hair.is_crowded && (is_cut(info) || behind > 0.0) {
         distance = min(distance, seen_to + CROWD_MARGIN * seen);
     }
-    return max(distance, seen_to + DEPTH_MARGIN * tiles.depth);
+    distance = max(distance, seen_to + DEPTH_MARGIN * tiles.depth);
+    // A tile that leaves out nothing need not be drawn again.
+    return select(FARTHEST, distance, distance < slice_distance(begin, SLICES));
 }
 
 // The complement of the bits of the nearness behind which it hides all.

@@ -188,7 +188,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
                @builtin(local_invocation_index) lane: u32) {
     let pieces = pieces();
     let index = group.y * groups.x + group.x;
-    // Exact: with the half, a quotient is nowhere near a whole number.
+    // Exact: with the half, a quotient is at least 1/256 away from a whole number, and off by less than 1e-4.
     let own_vertex = u32((f32(lane) + 0.5) / f32(pieces.strands));
     let own = lane - own_vertex * pieces.strands;
     let number = index / pieces.count * pieces.strands + own;

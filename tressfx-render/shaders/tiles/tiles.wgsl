@@ -104,7 +104,7 @@ struct SharedTileInfo {
 struct KeptTile {
     // The complement of the bits of the nearness behind which its hair has hidden all; 0 where nothing is known of it.
     hidden: atomic<u32>,
-    // Where the units of each quarter ended, see `cuts`. It decides about speed alone, but where a group ends
+    // Where the units of each quarter are to end, see `cuts`. It decides about speed alone, but where a group ends
     // early, see `turns`.
     cuts: array<atomic<u32>, QUARTERS>,
 }
