@@ -7,8 +7,6 @@ const CUTS: u32 = 4u;
 // A cut is the number of references before it. Of the logarithm of that and one so many bits are kept: it is kept up to 4.5 % too large; 0 is none.
 const CUT_BITS: u32 = 8u;
 const CODES_OF_AN_OCTAVE: f32 = 16.0;
-// A code may be rounded by so much: a cut that is met again must not become larger in each frame.
-const CODE_MARGIN: f32 = 0.05;
 // A cut this much farther than where a unit begins is not its end, but where it begins.
 const NEAR_CUT: f32 = 1.06;
 // Where a unit closed all pixels, the next frame takes as much of it as was blended, times this.
@@ -36,7 +34,7 @@ fn recall_cuts(packed: u32) {
 fn pack_cuts() -> u32 {
     var packed = 0u;
     for (var i = 0u; i < CUTS; i++) {
-        let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE - CODE_MARGIN);
+        let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE);
         packed |= min(u32(code), (1u << CUT_BITS) - 1u) << (CUT_BITS * i);
     }
     return packed;
