@@ -61,6 +61,11 @@ pub(crate) struct PassTime {
     pub(crate) ms: f64,
 }
 
+/// Time of all these in milliseconds; none where the device cannot time passes.
+pub(crate) fn sum_of(passes: &[PassTime]) -> Option<f64> {
+    (!passes.is_empty()).then(|| passes.iter().map(|pass| pass.ms).sum())
+}
+
 /// One method on one scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Row {
@@ -86,8 +91,7 @@ pub(crate) struct Row {
 impl Row {
     /// Time of a frame's hair in milliseconds; none where the device cannot time passes.
     pub(crate) fn ms(&self) -> Option<f64> {
-        let sum = self.passes.iter().map(|pass| pass.ms).sum::<f64>();
-        (!self.passes.is_empty()).then_some(sum)
+        sum_of(&self.passes)
     }
 
     /// Root of the mean square error, of 1.

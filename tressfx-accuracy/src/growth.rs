@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 
-use crate::figures::{Extent, PassTime};
+use crate::figures::{self, Extent, PassTime};
 use crate::growth_plot;
 use crate::measure;
 use crate::method::{self, Method};
@@ -54,7 +54,7 @@ pub(crate) struct Point {
 impl Point {
     /// Milliseconds of a frame's hair; 0 where the device cannot time passes.
     pub(crate) fn ms(&self) -> f64 {
-        self.passes.iter().fold(0.0, |sum, pass| sum + pass.ms)
+        figures::sum_of(&self.passes).unwrap_or(0.0)
     }
 }
 

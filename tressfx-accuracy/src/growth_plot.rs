@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use crate::growth::{Growth, Point};
 use crate::method::family_of;
-use crate::plot::COLORS;
+use crate::plot::{COLORS, Drawn, milliseconds};
 
 const AREA: (u32, u32) = (760, 480);
 /// Of the line that time would follow if it grew as the strands do.
@@ -26,7 +26,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> std::ops::Range<f64> {
     if least > 0.0 && least < f64::INFINITY { least / 1.3..largest * 1.3 } else { 0.1..10.0 }
 }
 
-fn draw(svg: &mut String, growth: &Growth) -> std::result::Result<(), DrawingAreaErrorKind<std::io::Error>> {
+fn draw(svg: &mut String, growth: &Growth) -> Drawn {
     let area = SVGBackend::with_string(svg, AREA).into_drawing_area();
     area.fill(&WHITE)?;
     let strands = range(growth.points.iter().map(|point| f64::from(point.strands)));
@@ -36,7 +36,7 @@ fn draw(svg: &mut String, growth: &Growth) -> std::result::Result<(), DrawingAre
         .margin(14)
         .x_label_area_size(48)
         .y_label_area_size(60)
-        .build_cartesian_2d(strands.clone().log_scale().base(2.0), times.log_scale())?;
+        .build_cartesian_2d(strands.log_scale().base(2.0), times.log_scale())?;
     let [width, height] = growth.size;
     chart
         .configure_mesh()
@@ -44,7 +44,7 @@ fn draw(svg: &mut String, growth: &Growth) -> std::result::Result<(), DrawingAre
         .x_desc("strands")
         .y_desc(format!("milliseconds a frame, {width}x{height}, {}", growth.adapter))
         .x_label_formatter(&|strands| format!("{strands:.0}"))
-        .y_label_formatter(&|ms| format!("{}", (ms * 1e6).round() / 1e6))
+        .y_label_formatter(&milliseconds)
         .draw()?;
     for method in growth.methods() {
         let points: Vec<_> = growth.of(method).map(|point| (f64::from(point.strands), point.ms())).collect();

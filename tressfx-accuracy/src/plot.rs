@@ -90,7 +90,7 @@ fn front<'a>(points: &[Point<'a>]) -> Vec<Point<'a>> {
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<plotters::coord::combinators::LogCoord<f64>, RangedCoordf64>>;
-type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
+pub(crate) type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn {
     let area: Area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
@@ -113,8 +113,7 @@ fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn 
         .light_line_style(WHITE)
         .x_desc(format!("milliseconds a frame, {device}"))
         .y_desc("FLIP against the reference")
-        // 0.3 is found as three times 0.1.
-        .x_label_formatter(&|ms| format!("{}", (ms * 1e6).round() / 1e6))
+        .x_label_formatter(&milliseconds)
         .draw()?;
     draw_front(&mut chart, points)?;
     draw_legend(&legend, 0, "none is faster and more exact", FRONT)?;
@@ -131,6 +130,11 @@ fn draw(svg: &mut String, scene: &str, device: &str, points: &[Point]) -> Drawn 
         draw_legend(&legend, row, "hollow: raw Vulkan", WHITE)?;
     }
     area.present()
+}
+
+/// The label of a time: 0.3 is found as three times 0.1.
+pub(crate) fn milliseconds(ms: &f64) -> String {
+    format!("{}", (ms * 1e6).round() / 1e6)
 }
 
 /// One row of the legend: a dot for a family, a line for the best ones.

@@ -36,8 +36,7 @@ fn hidden_from(info: TileInfo, closed: Unit, seen_to: f32, hair: HairState) -> f
     let behind = references_before(SLICES) - needed;
     var distance = FARTHEST;
     if behind > reserve {
-        let end = last_end(closed.end, SLICES, needed + reserve) + 1u;
-        distance = select(FARTHEST, slice_distance(begin, end), end < SLICES);
+        distance = slice_distance(begin, last_end(closed.end, SLICES, needed + reserve) + 1u);
     } else if is_cut(info) && behind >= KEPT_RESERVE * reserve {
         distance = distance_of(info.farthest);
     } else if is_cut(info) {
