@@ -36,7 +36,7 @@ fn draw(svg: &mut String, growth: &Growth) -> Drawn {
         .margin(14)
         .x_label_area_size(48)
         .y_label_area_size(60)
-        .build_cartesian_2d(strands.log_scale().base(2.0), times.log_scale())?;
+        .build_cartesian_2d(strands.log_scale().base(2.0), times.log_scale().base(2.0))?;
     let [width, height] = growth.size;
     chart
         .configure_mesh()

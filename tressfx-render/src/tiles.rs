@@ -233,6 +233,13 @@ impl Tiles {
         [self.capacity(), self.memory.screen.resolved.slots, self.memory.vertices.count].map(u64::from)
     }
 
+    /// Of which of them the next frame may need more than there is room for: of no more than there can be.
+    fn tight(&self, needed: [u64; 3]) -> [bool; 3] {
+        let most = [u64::MAX, self.memory.most_slots(), self.most_vertices];
+        let room = self.room();
+        [0, 1, 2].map(|i| is_tight(room[i], needed[i]) && room[i] < most[i].max(needed[i]))
+    }
+
     fn few_tiles(&self) -> u32 {
         self.desc.few_tiles.unwrap_or(if self.is_cpu { 0 } else { TilesDesc::FEW_TILES })
     }
@@ -251,7 +258,7 @@ impl Tiles {
         // To look for what is hidden in few tiles takes longer than to draw it.
         let (tiles, few) = (counters.tiles_with_hair, self.few_tiles());
         if !self.is_dense && density > DENSE && tiles > few {
-            (self.is_dense, self.usage) = (true, Usage::new());
+            (self.is_dense, self.usage) = (true, Usage::settling());
         }
         self.is_dense &= density > LOOSE && tiles > few / 2;
     }
@@ -291,8 +298,9 @@ impl TechniqueInstance for Tiles {
         let before = self.room();
         let needed = [counters.wanted, counters.tiles_with_hair, counters.vertices].map(u64::from);
         let [kept, tiles, vertices] = needed;
-        if needed.iter().zip(before).any(|(needed, room)| is_tight(room, *needed)) {
-            let more = if is_tight(before[2], vertices) { with_headroom(vertices) } else { 0 };
+        let tight = self.tight(needed);
+        if tight.contains(&true) {
+            let more = if tight[2] { with_headroom(vertices) } else { 0 };
             let vertices = more.min(self.most_vertices.max(vertices));
             self.reserve(backend, Wanted { kept, tiles, vertices })?;
         }

@@ -256,6 +256,11 @@ impl Memory {
         })
     }
 
+    /// Tiles that there can be.
+    pub(crate) fn most_slots(&self) -> u64 {
+        tile_count(self.screen.size).into()
+    }
+
     /// What may be predicted for one round, before room is added for what the next frame may need.
     pub(crate) fn largest_round(&self) -> f64 {
         f64::from(self.most_references) / HEADROOM
@@ -282,7 +287,7 @@ impl Memory {
         backend: &mut dyn Backend,
         Wanted { kept: wanted, tiles, vertices }: Wanted,
     ) -> Result<()> {
-        let slots = tiles.min(tile_count(self.screen.size).into()) as u32;
+        let slots = tiles.min(self.most_slots()) as u32;
         let more = |slots| self.screen.resolved.more_colors(backend, slots);
         let colors = (slots > self.screen.resolved.slots).then_some(slots).map(more).transpose()?;
         let count = wanted.min(u64::from(self.most_references)) as u32;
@@ -318,7 +323,7 @@ impl Memory {
         Wanted { kept: references, tiles, vertices }: Wanted,
     ) -> Result<()> {
         if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into()), SURPLUS) {
-            let slots = times(tiles, SETTLED).max(LEAST_SLOTS.into()).min(tile_count(self.screen.size).into()) as u32;
+            let slots = times(tiles, SETTLED).max(LEAST_SLOTS.into()).min(self.most_slots()) as u32;
             let colors = self.screen.resolved.more_colors(backend, slots)?;
             self.screen.replace_colors(backend, colors, slots);
         }
