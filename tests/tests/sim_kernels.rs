@@ -44,6 +44,10 @@ fn cases() -> Vec<Case> {
         case("local shape", SimParams { local_stiffness: 0.9, ..no_lengths.clone() }),
         Case { wind: true, ..case("wind", params()) },
         Case { capsules: true, ..case("capsules", no_lengths) },
+        // Displacements at the limit, on both sides of it, and far below it.
+        case("slow", SimParams { max_speed: 0.05, ..params() }),
+        case("slower than its head", SimParams { max_speed: 0.3, shock: 0.3, ..params() }),
+        case("fast", SimParams { max_speed: 1.0, shock: 0.0, ..params() }),
     ]
 }
 

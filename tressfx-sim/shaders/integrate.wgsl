@@ -1,7 +1,7 @@
 // Velocity shock propagation, Verlet integration with damping and gravity, and the pull towards the global shape. Also what brings
 // a vertex from the centre of the last sub-step to that of this one.
 
-import package::root::{Root, carried, shape_of};
+import package::root::{Root, carried, most_carried, shape_of};
 import package::step::step;
 import package::vector::rotate;
 
@@ -14,7 +14,8 @@ fn integrated(root: Root, last: vec3<f32>, past: vec3<f32>, rest: vec4<f32>, ver
     // A pinned vertex goes where its root takes it, so its past does not matter.
     if (rest.w == 0.0) { return Free(shape, shape); }
     let here = shocked(root, last);
-    let moved = moved_on(root, here, shocked_displacement(root, last - past), shocked(root, past));
+    let displacement = bounded(root, here, shocked_displacement(root, last - past), past);
+    let moved = here + step.velocity_kept * displacement + step.gravity;
     return Free(pulled_to_shape(moved, shape, vertex), here);
 }
 
@@ -32,19 +33,25 @@ fn shocked_displacement(root: Root, last: vec3<f32>) -> vec3<f32> {
     return last + step.shock * (rotate(root.turn, last) - last);
 }
 
-/// Where a vertex gets to by its own velocity and gravity.
-fn moved_on(root: Root, here: vec3<f32>, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
-    return here + step.velocity_kept * bounded(root, displacement, before) + step.gravity;
-}
-
 /// The displacement, no longer than `max_displacement` relative to the head: a passenger's hair is not held back by the
 /// speed of the car. The head's motion counts without the share that the shock has made already.
-fn bounded(root: Root, displacement: vec3<f32>, before: vec3<f32>) -> vec3<f32> {
+fn bounded(root: Root, here: vec3<f32>, displacement: vec3<f32>, past: vec3<f32>) -> vec3<f32> {
+    if (is_slow(root, here, displacement)) { return displacement; }
+    let before = shocked(root, past);
     let remaining = (1.0 - step.shock) * (carried(root, before + step.center_displacement) - before);
     let relative = displacement - remaining;
     let squared = dot(relative, relative);
     if (squared <= step.max_displacement * step.max_displacement) { return displacement; }
     return remaining + relative * (step.max_displacement * inverseSqrt(squared));
+}
+
+/// Whether a displacement is so small that it needs no bound, wherever the head's motion goes. Most are; then it is not asked where that is.
+fn is_slow(root: Root, here: vec3<f32>, displacement: vec3<f32>) -> bool {
+    let motion = (1.0 - step.shock) * most_carried(root);
+    // Squares of sums are no more than so many times the sums of squares.
+    let squared = dot(displacement, displacement);
+    let by_head = motion.x * motion.x * (dot(here, here) + squared) + motion.y * motion.y;
+    return 2.0 * squared + 6.0 * by_head < step.max_displacement * step.max_displacement;
 }
 
 /// A vertex after the pull towards where its root takes the rest pose, if it is within the range.

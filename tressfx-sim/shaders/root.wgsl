@@ -49,6 +49,16 @@ fn carried(root: Root, last: vec3<f32>) -> vec3<f32> {
     @if(roots) { return rotate(root.turn, last - root.last_place) + root.place; }
 }
 
+/// The root's motion moves no point by more than the first of these times its distance from the centre, and the second.
+fn most_carried(root: Root) -> vec2<f32> {
+    let turn = 2.0 * length(root.turn.xyz);
+    @if(!roots) { return vec2(turn, (1.0 + turn) * length(step.center_displacement)); }
+    @if(roots) {
+        let way = length(root.place - root.last_place + step.center_displacement);
+        return vec2(turn, turn * (length(root.last_place) + length(step.center_displacement)) + way);
+    }
+}
+
 /// Where a point was one sub-step ago that the root's motion has taken here; relative to the centre of then.
 fn carried_from(root: Root, here: vec3<f32>) -> vec3<f32> {
     @if(!roots) { return rotate_back(root.turn, here); }

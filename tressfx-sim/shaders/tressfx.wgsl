@@ -69,7 +69,9 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
 
     // `CHUNK` vertices are loaded at once, while the ones before them are worked on: a load cannot be moved up across stores.
     var ahead = loaded(strand, 0u);
-    for (var start = 0u; start < step.vertices + LAG; start += CHUNK) {
+    for (var turn = 0u; turn * CHUNK < step.vertices + LAG; turn++) {
+        // So a compiler knows which vertices are even.
+        let start = turn * CHUNK;
         var chunk = ahead;
         if (start + CHUNK < step.vertices) { ahead = loaded(strand, start + CHUNK); }
         for (var i = 0u; i < CHUNK; i++) {

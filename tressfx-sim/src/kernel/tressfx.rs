@@ -13,7 +13,7 @@ pub(crate) const SOURCE: ShaderSource = ShaderSource {
 };
 
 /// Vertices that are loaded at once: more do not stay in registers beside those that the stages are at.
-const CHUNK: u32 = 4;
+const CHUNK: u32 = 2;
 
 /// `None` for a section with another solver.
 pub(crate) fn tressfx(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
