@@ -295,11 +295,11 @@ impl Ppll {
         Ok(())
     }
 
-    /// Gives back all that was reserved.
+    /// Gives back all nodes, until more are reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
         let variant = self.desc.variant(self.desc.cap.is_some(), self.output);
         let kernel = self.resolve.prepare(backend, variant)?;
-        if let Some(nodes) = self.pool.prepare_smaller(backend, 0)? {
+        if let Some(nodes) = self.pool.prepare_idle(backend)? {
             self.pool.replace(backend, nodes);
         }
         self.resolve.change(variant, kernel);

@@ -12,10 +12,13 @@ use crate::counters::ViewCounters;
 use crate::renderer::with_headroom;
 use crate::resolved::{pixels, storage};
 use crate::usage::is_surplus;
+use crate::views::BoundView;
 
 /// A pool is made smaller that is more than so many times as large as what was needed.
 const SURPLUS: f64 = 1.6;
-use crate::views::BoundView;
+
+/// Nodes of lists that are not in use.
+const IDLE_NODES: u32 = 1 << 10;
 
 /// Bytes of a fragment: depth key, colour and alpha, next; with several places, what it covers.
 fn node_bytes(desc: &PpllDesc) -> u64 {
@@ -107,6 +110,12 @@ impl NodePool {
         let capacity = with_headroom(needed).clamp(u64::from(self.least), u64::from(self.largest)) as u32;
         let shrinks = capacity < self.capacity && is_surplus(self.capacity.into(), needed, SURPLUS);
         if shrinks { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
+    }
+
+    /// As few nodes as a pool may have while nobody fills it; it changes nothing yet.
+    pub(crate) fn prepare_idle(&self, backend: &mut dyn Backend) -> Result<Option<Nodes>> {
+        let capacity = IDLE_NODES.min(self.least);
+        if capacity < self.capacity { self.nodes_for(backend, capacity).map(Some) } else { Ok(None) }
     }
 
     fn nodes_for(&self, backend: &mut dyn Backend, capacity: u32) -> Result<Nodes> {
