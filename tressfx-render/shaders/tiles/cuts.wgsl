@@ -50,6 +50,14 @@ fn next_cut(from_reference: f32) -> f32 {
     return 0.0;
 }
 
+// A unit did not fit: the frame before says nothing of what is here. Where a part of a quarter was told by another part, each part of a unit would be tried up to the same
+// cut again.
+fn forget_cuts() {
+    for (var i = 0u; i < CUTS; i++) {
+        cuts[i] = 0.0;
+    }
+}
+
 // A unit that ends behind so many references was blended: it is joined to the one before where both fit.
 fn note_cut(to_reference: f32, found: u32) {
     if new_count == 0u || f32(new_found + found) > FILL * f32(ENTRIES) {

@@ -1,7 +1,7 @@
 // What a group blends at once: a range of depths, from somewhere in a slice to somewhere in the same or in a later one.
 
 import package::constants::LANES;
-import package::cuts::{next_cut, note_cut};
+import package::cuts::{forget_cuts, next_cut, note_cut};
 import package::fragment::depth_key;
 import package::tiles::{SLICES, nearness_at, slice_distance};
 
@@ -145,6 +145,7 @@ fn next_unit(unit: Unit, found: u32, ends: vec2<u32>) -> Unit {
     if unit.is_mean == 0u {
         rate = max(f32(found) / max(unit.to_reference - unit.from_reference, 1.0), max(LEAST_RATE, FALL * rate));
         if found > ENTRIES {
+            forget_cuts();
             return part_of(unit, found, ends, rate);
         }
     }
