@@ -47,7 +47,7 @@ fn cases() -> Vec<Case> {
         // Displacements at the limit, on both sides of it, and far below it.
         case("slow", SimParams { max_speed: 0.05, ..params() }),
         case("slower than its head", SimParams { max_speed: 0.3, shock: 0.3, ..params() }),
-        case("fast", SimParams { max_speed: 1.0, shock: 0.0, ..params() }),
+        case("fast", SimParams { max_speed: 1.0, shock: 0.6, ..params() }),
     ]
 }
 
