@@ -41,7 +41,8 @@ pub struct TilesDesc {
     /// Memory that the references to segments may take, 4 bytes each; at most [`TilesDesc::MAX_REFERENCE_BYTES`]. The device's
     /// own limit for one binding holds too. Where a picture needs more, its tiles are drawn in rounds.
     pub max_reference_bytes: u64,
-    /// Transmittance of a pixel below which nothing more is blended into it.
+    /// Transmittance of a pixel below which nothing more is blended into it. With 1/4096 what is left out is less than what half floats round off; dense hair takes up to
+    /// a tenth longer than with the default.
     pub closed_below: f32,
     /// Whether segments are left out that were hidden by other hair in the frame before. A tile in which they are not hidden any more
     /// is drawn again with all of them, so that the picture is the same. None: where hair is dense, in more than [`TilesDesc::few_tiles`].

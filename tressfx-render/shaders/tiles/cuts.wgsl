@@ -19,6 +19,12 @@ var<workgroup> new_cuts: array<f32, CUTS>;
 var<workgroup> new_count: u32;
 var<workgroup> new_found: u32;
 
+// A quarter has one word. Where it is divided among groups, each keeps one of its cuts there, the first: with these bits of the word, from this one on.
+const CUT_OF_PART: u32 = (1u << CUT_BITS) - 1u;
+fn bit_of_part(part: u32) -> u32 {
+    return CUT_BITS * part;
+}
+
 // One lane comes here.
 fn recall_cuts(packed: u32) {
     for (var i = 0u; i < CUTS; i++) {
@@ -35,7 +41,7 @@ fn pack_cuts() -> u32 {
     var packed = 0u;
     for (var i = 0u; i < CUTS; i++) {
         let code = ceil(log2(new_cuts[i] + 1.0) * CODES_OF_AN_OCTAVE);
-        packed |= min(u32(code), (1u << CUT_BITS) - 1u) << (CUT_BITS * i);
+        packed |= min(u32(code), CUT_OF_PART) << (CUT_BITS * i);
     }
     return packed;
 }
@@ -50,8 +56,7 @@ fn next_cut(from_reference: f32) -> f32 {
     return 0.0;
 }
 
-// A unit did not fit: the frame before says nothing of what is here. Where a part of a quarter was told by another part, each part of a unit would be tried up to the same
-// cut again.
+// A unit did not fit: the frame before says nothing of what is here. Each part of the unit would be tried up to the same cut again.
 fn forget_cuts() {
     for (var i = 0u; i < CUTS; i++) {
         cuts[i] = 0.0;

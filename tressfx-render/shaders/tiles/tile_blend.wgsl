@@ -7,7 +7,7 @@
 // depths of its slice. Where fragments of one and the same depth are too many, they are blended as their mean.
 
 import package::constants::LANES;
-import package::cuts::{note_end, pack_cuts, recall_cuts};
+import package::cuts::{CUT_OF_PART, bit_of_part, note_end, pack_cuts, recall_cuts};
 import package::entries::{
     Painted, add, blended_share, color_at, empty, ends, entry_at, gather, none_painted, note_blended, paint, pixel_of, places_of, put_colors,
     settle_ties, start_of, ties, total, with_one_more,
@@ -313,6 +313,13 @@ fn see_mean(unit: Unit, pixel: u32) {
     }
 }
 
+// What the frame before has told the group.
+fn told_cuts(own: Job) -> u32 {
+    let told = atomicLoad(&state.tiles[own.tile].cuts[own.quarter]);
+    if own.parts == PARTS_OF_A_QUARTER { return told; }
+    return (told >> bit_of_part(firstTrailingBit(own.parts))) & CUT_OF_PART;
+}
+
 // Where the quarter begins, and what lies before it.
 fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
     if is_own(own, corner, lane) {
@@ -330,7 +337,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
             last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
         }
         seen_to = -1.0;
-        recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]));
+        recall_cuts(told_cuts(own));
         @if(few_turns) { none_turned(); }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
@@ -452,12 +459,17 @@ fn keep(own: Job) {
         let hair = HairState(is_restless(atomicLoad(&state.reopened)), queue.references > tiles.crowd);
         atomicMax(&state.tiles[own.tile].hidden, hidden_by(own.info, plan, seen_to, hair));
     }
-    if (own.parts & 1u) == 1u {
-        // Where a quarter is divided among groups, one of them tells for all.
-        var cuts = pack_cuts();
-        // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
-        @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
-        atomicStore(&state.tiles[own.tile].cuts[own.quarter], cuts);
+    var cuts = pack_cuts();
+    // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
+    @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
+    let quarter = &state.tiles[own.tile].cuts[own.quarter];
+    if own.parts == PARTS_OF_A_QUARTER {
+        atomicStore(quarter, cuts);
+    } else {
+        // No other group has these bits.
+        let bit = bit_of_part(firstTrailingBit(own.parts));
+        atomicAnd(quarter, ~(CUT_OF_PART << bit));
+        atomicOr(quarter, (cuts & CUT_OF_PART) << bit);
     }
 }
 
