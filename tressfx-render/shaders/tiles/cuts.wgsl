@@ -1,6 +1,7 @@
 // Where the units of a quarter ended in the frame before, and where the one that closed it need not have gone on. What hair moves by in a frame changes little of how many fragments the nearest references
 // leave, so that units that end behind as many again fit the list. One that does not is divided, as where nothing is known.
 
+import package::tiles::PARTS_OF_A_QUARTER;
 import package::unit::{ENTRIES, FILL};
 
 const CUTS: u32 = 4u;
@@ -21,12 +22,13 @@ var<workgroup> new_found: u32;
 
 // A quarter has one word. Where it is divided among groups, each keeps one of its cuts there, the first: with these bits of the word, from this one on.
 const CUT_OF_PART: u32 = (1u << CUT_BITS) - 1u;
-fn bit_of_part(part: u32) -> u32 {
-    return CUT_BITS * part;
+fn bit_of_part(parts: u32) -> u32 {
+    return CUT_BITS * firstTrailingBit(parts);
 }
 
-// One lane comes here.
-fn recall_cuts(packed: u32) {
+// Of the word of the quarter what is for a group with these parts. One lane comes here.
+fn recall_cuts(word: u32, parts: u32) {
+    let packed = select((word >> bit_of_part(parts)) & CUT_OF_PART, word, parts == PARTS_OF_A_QUARTER);
     for (var i = 0u; i < CUTS; i++) {
         let code = extractBits(packed, CUT_BITS * i, CUT_BITS);
         cuts[i] = exp2(f32(code) / CODES_OF_AN_OCTAVE) - 1.0;

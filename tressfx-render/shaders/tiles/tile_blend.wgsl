@@ -313,13 +313,6 @@ fn see_mean(unit: Unit, pixel: u32) {
     }
 }
 
-// What the frame before has told the group.
-fn told_cuts(own: Job) -> u32 {
-    let told = atomicLoad(&state.tiles[own.tile].cuts[own.quarter]);
-    if own.parts == PARTS_OF_A_QUARTER { return told; }
-    return (told >> bit_of_part(firstTrailingBit(own.parts))) & CUT_OF_PART;
-}
-
 // Where the quarter begins, and what lies before it.
 fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
     if is_own(own, corner, lane) {
@@ -337,7 +330,7 @@ fn prepare(own: Job, corner: vec2<u32>, lane: u32) {
             last_key = max(depth_key(own.info.farthest), KEYS) - KEYS;
         }
         seen_to = -1.0;
-        recall_cuts(told_cuts(own));
+        recall_cuts(atomicLoad(&state.tiles[own.tile].cuts[own.quarter]), own.parts);
         @if(few_turns) { none_turned(); }
         atomicStore(&open, 0u);
         atomicStore(&hit_count, 0u);
@@ -462,14 +455,14 @@ fn keep(own: Job) {
     var cuts = pack_cuts();
     // Where a group ends early depends on its units: it leaves none, so that the next frame ends where this one does.
     @if(few_turns) { cuts = select(cuts, 0u, plan.first < SLICES); }
-    let quarter = &state.tiles[own.tile].cuts[own.quarter];
+    let word = &state.tiles[own.tile].cuts[own.quarter];
     if own.parts == PARTS_OF_A_QUARTER {
-        atomicStore(quarter, cuts);
+        atomicStore(word, cuts);
     } else {
         // No other group has these bits.
-        let bit = bit_of_part(firstTrailingBit(own.parts));
-        atomicAnd(quarter, ~(CUT_OF_PART << bit));
-        atomicOr(quarter, (cuts & CUT_OF_PART) << bit);
+        let bit = bit_of_part(own.parts);
+        atomicAnd(word, ~(CUT_OF_PART << bit));
+        atomicOr(word, (cuts & CUT_OF_PART) << bit);
     }
 }
 
