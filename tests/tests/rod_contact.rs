@@ -85,7 +85,8 @@ fn a_strand_comes_to_rest_on_a_bar() {
     }
 }
 
-/// Whether a bar that comes at a speed, hits a hanging strand and goes on for 5 cm goes through it: whether its axis crosses an edge.
+/// Whether a bar that comes at a speed, hits a hanging strand and goes on for 5 cm goes through it: whether its axis crosses an edge. Where it is so far from the root that
+/// a strand drawn straight from there to its surface would be too short, the strand has slid off.
 fn goes_through(radius: f64, speed: f64, vertices: usize, [height, start, lean]: [f64; 3]) -> bool {
     let rest = line(vertices, DVec3::new(0.0, -1.0, lean));
     let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
@@ -105,7 +106,8 @@ fn goes_through(radius: f64, speed: f64, vertices: usize, [height, start, lean]:
         direct(&step, &rest, &mut rod);
         let crosses = |(edge, was): (usize, Option<bool>)| was.is_some_and(|was| side(&rod, now, edge) == Some(!was));
         if sides.into_iter().enumerate().any(crosses) {
-            return true;
+            let reach = (now.length_squared() - radius * radius).max(0.0).sqrt();
+            return reach < LENGTH;
         }
     }
     false
@@ -113,13 +115,24 @@ fn goes_through(radius: f64, speed: f64, vertices: usize, [height, start, lean]:
 
 #[test]
 fn fast_bars_do_not_go_through() {
-    let case = |i: f64| [0.3 + 0.6 * (i * 0.618).fract(), 0.002 + 0.1 * (i * 0.414).fract(), 0.3 * (i * 0.732).fract()];
-    for radius in [0.005, 0.01, 0.03] {
-        for speed in [1.0, 3.0, 10.0] {
+    // Cases that lie evenly beside each other, and never come again.
+    let part = |i: i32, of: f64| (f64::from(i) * of).fract();
+    let [height, start, lean] = [0.618_033_988_75, 0.414_213_562_37, 0.732_050_807_57];
+    let case = |i: i32| [0.3 + 0.6 * part(i, height), 0.002 + 0.1 * part(i, start), 0.3 * part(i, lean)];
+    for radius in [0.0025, 0.005, 0.01, 0.03] {
+        // The fastest are over soonest.
+        for (speed, cases) in [(1.0, 100), (3.0, 100), (10.0, 1000)] {
             for vertices in [16, 32, 64] {
-                let through = (0..100).filter(|&i| goes_through(radius, speed, vertices, case(f64::from(i)))).count();
-                println!("radius {radius} m, {speed} m/s, {vertices} vertices: {through} of 100 go through");
-                assert!(through <= 1, "{radius}, {speed}, {vertices}: {through}");
+                let is_through = |i: &i32| goes_through(radius, speed, vertices, case(*i));
+                let through = (0..cases).filter(is_through).count();
+                println!("radius {radius} m, {speed} m/s, {vertices} vertices: {through} of {cases} go through");
+                let most = match (radius, speed) {
+                    (0.0025..0.02, 10.0) => 0,
+                    // It drags a strand by half of its length, which then whips around it.
+                    (0.0025, 3.0) => 5,
+                    _ => 1,
+                };
+                assert!(through <= most, "{radius}, {speed}, {vertices}: {through}");
             }
         }
     }

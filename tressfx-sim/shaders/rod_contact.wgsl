@@ -15,8 +15,10 @@ const CONTACT: f32 = 100.0;
 /// The stiffness of friction until it yields, as a share of that. With more, what the springs along a strand do to each other
 /// needs many more rounds.
 const GRIP: f32 = 0.01;
-/// There is another round where an edge is deeper than this share of the radius.
+/// There is another round where an edge is deeper than this share of the radius, and from there on the push grows so much faster with the depth. A taut strand pulls as hard
+/// as a push at a depth of some millimetres; with a push that is as stiff near the surface strands at rest would tremble.
 const DEEP: f32 = 0.1;
+const STEEPER: f32 = 10.0;
 /// An edge touches between its ends where it is nearer to the axis there than at its ends; in full from this share of the
 /// radius on.
 const NEARER: f32 = 0.1;
@@ -162,7 +164,10 @@ fn add(contacts: ptr<function, Contacts>, edge: Edge, way: Way, near: Near, weig
     let stretched = stretch + past;
     let along = stretched - dot(stretched, near.normal) * near.normal;
     let length = sqrt(dot(along, along));
-    let most = step.friction * -near.gap / GRIP;
+    let depth = -near.gap;
+    let is_deep = depth > deep;
+    let pushed = select(depth, deep + STEEPER * (depth - deep), is_deep);
+    let most = step.friction * pushed / GRIP;
     let across = outer(1.0, near.normal);
     var grip = sum(scaled_identity(GRIP), scaled(-GRIP, across));
     var held = along;
@@ -173,8 +178,8 @@ fn add(contacts: ptr<function, Contacts>, edge: Edge, way: Way, near: Near, weig
         held = most * direction;
     }
     let scale = weight * CONTACT * mass;
-    let stiffness = scaled(scale, sum(across, grip));
-    let push = scale * -near.gap * near.normal;
+    let stiffness = scaled(scale, sum(scaled(select(1.0, STEEPER, is_deep), across), grip));
+    let push = scale * pushed * near.normal;
     let force = push - scale * GRIP * held;
     (*contacts).place = sum((*contacts).place, stiffness);
     (*contacts).mixed = sum((*contacts).mixed, scaled(near.s, stiffness));
@@ -183,7 +188,7 @@ fn add(contacts: ptr<function, Contacts>, edge: Edge, way: Way, near: Near, weig
     (*contacts).torque += near.s * force;
     (*contacts).pull += push;
     if (near.gap < (*contacts).touch.gap) {
-        (*contacts).touch = Touch(index, near.normal, held, near.gap, near.gap < -deep);
+        (*contacts).touch = Touch(index, near.normal, held, near.gap, is_deep);
     }
 }
 

@@ -9,8 +9,9 @@ import package::rod::{
 };
 @if(colliders)
 import package::rod_near::{all_edges, is_any, surface_way};
+import package::rod_touch::Found;
 @if(contacts)
-import package::rod_touch::{Found, note_touches};
+import package::rod_touch::note_touches;
 import package::root::shape_of;
 import package::step::step;
 import package::substitute::{Aimed, NO_AIM_AT_ROOT, Round, Start, aim, aim_again, keep_aim, substitute};
@@ -26,9 +27,14 @@ const SHORT: f32 = 1.0 / 120.0;
 
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
 const TOUCHING_ROUNDS: u32 = 4u;
-/// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
-const MOST_ROUNDS: u32 = 8u;
+/// and at most so many where an edge is deep inside a capsule.
+const MOST_ROUNDS: u32 = 16u;
 const SETTLED: f32 = 1e-5;
+
+/// The longest rotation of an edge in a round, rad,
+const LONGEST_TURN: f32 = 1.5;
+/// and that of a strand that touches something: what it touches is another surface after a longer one.
+const TOUCHING_TURN: f32 = 0.3;
 
 /// The share of what the spring of a pinned tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
 /// that is pulled taut swings to and fro without end.
@@ -137,6 +143,11 @@ fn is_end(round: Round, found: Found) -> bool {
     return is_calm && !(found.touching && (round.count < TOUCHING_ROUNDS || found.deep));
 }
 
+/// No edge turns by more than this in the round behind a sweep that has found this.
+fn longest_turn(found: Found) -> f32 {
+    return select(LONGEST_TURN, TOUCHING_TURN, found.touching);
+}
+
 /// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no
 /// more than to where an edge may touch something.
 fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
@@ -154,7 +165,7 @@ fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
             if (is_end(round, found)) { break; }
         }
         let count = round.count + 1u;
-        round = substitute(strand, start, begin.is_first_round, limit_of(count));
+        round = substitute(strand, start, begin.is_first_round, longest_turn(found), limit_of(count));
         round.count = count;
         @if(colliders && !contacts) {
             if (is_any(round.near)) { break; }

@@ -11,8 +11,6 @@ import package::vector::{after, is_finite, turned_by};
 @if(colliders)
 import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, squared_past_head};
 
-/// The longest rotation of an edge in a round, rad.
-const LONGEST_TURN: f32 = 1.5;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
 /// The same for the first free edge: where its root is may be mostly rounding.
@@ -94,8 +92,8 @@ fn keep_aim(strand: Strand, vertex: u32, length: f32, aimed: Aimed) -> vec3<f32>
     return length * aimed.by;
 }
 
-/// `limit`: an edge that turns by more, rad, makes another round certain; then what the round comes to is not kept, but for the frames.
-fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) -> Round {
+/// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames.
+fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32) -> Round {
     let speed = speed_of(strand.has_past, 1.0);
     var round = nothing_done(start);
     var shift = vec3(0.0);
@@ -114,8 +112,8 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, limit: f32) ->
         let torque = torque_by(spring, parent_turn) - shift * here.left.mixed;
         var turn = here.left.free + solved(here.left.factors, torque);
         let size = sqrt(dot(turn, turn));
-        turn *= min(1.0, LONGEST_TURN / max(size, LONGEST_TURN));
-        round.longest = max(round.longest, min(size, LONGEST_TURN));
+        turn *= min(1.0, most / max(size, most));
+        round.longest = max(round.longest, min(size, most));
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
         let by = here.by + turned_by(rotation, along(here.now));

@@ -46,8 +46,8 @@ const FOLDED: f64 = -0.99;
 
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
 const TOUCHING_ROUNDS: u32 = 4;
-/// and at most so many where an edge is deep inside a capsule. It is also the most that a strand may ask for.
-const MOST_ROUNDS: u32 = 8;
+/// and at most so many where an edge is deep inside a capsule.
+const MOST_ROUNDS: u32 = 16;
 const SETTLED: f64 = 1e-5;
 
 /// How a rod moves during a sub-step. Lengths in the unit of the file.

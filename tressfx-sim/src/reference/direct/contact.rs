@@ -21,6 +21,9 @@ const GRIP: f64 = 0.01;
 const DEEP: f64 = 0.1;
 /// or, in a field, deeper than so many cells.
 const DEEP_CELLS: f64 = 0.1;
+/// From there on the push grows so much faster with the depth. A taut strand pulls as hard as a push at a depth of some millimetres; with a push that is as stiff near the
+/// surface strands at rest would tremble.
+const STEEPER: f64 = 10.0;
 /// An edge touches between its ends where it is nearer to the axis there than at its ends; in full from this share of the
 /// radius on.
 const NEARER: f64 = 0.1;
@@ -143,6 +146,8 @@ pub(super) struct Contacts {
     pub(super) torque: DVec3,
     /// The force across the surface alone, which tension knows of.
     pub(super) pull: DVec3,
+    /// Whether there are any.
+    pub(super) touches: bool,
 }
 
 impl Contacts {
@@ -153,6 +158,7 @@ impl Contacts {
         force: DVec3::ZERO,
         torque: DVec3::ZERO,
         pull: DVec3::ZERO,
+        touches: false,
     };
 
     fn add(&mut self, s: f64, stiffness: DMat3, force: DVec3) {
@@ -242,9 +248,15 @@ struct Contact {
 }
 
 impl Contact {
+    /// The push over the stiffness that it has near the surface, and how much more it grows with the depth than there.
+    fn push(&self) -> (f64, f64) {
+        let depth = -self.point.near.gap;
+        if depth > self.deep { (self.deep + STEEPER * (depth - self.deep), STEEPER) } else { (depth, 1.0) }
+    }
+
     /// Friction yields where it is stretched by more than this.
     fn most_stretch(&self, friction: f64) -> f64 {
-        friction * -self.point.near.gap / GRIP
+        friction * self.push().0 / GRIP
     }
 }
 
@@ -291,7 +303,8 @@ impl Motion<'_> {
     pub(super) fn contacts(&self, rod: &Rod, edge: usize) -> Contacts {
         let mut contacts = Contacts::NONE;
         for contact in self.touches(rod, edge) {
-            let Near { s, normal, gap, .. } = contact.point.near;
+            let Near { s, normal, .. } = contact.point.near;
+            let (push, grows) = contact.push();
             let stiffness = contact.point.weight * CONTACT * self.rest.masses[edge + 1];
             let (across, most) = (outer(normal, normal), contact.most_stretch(self.step.friction));
             let (stretch, length) = (contact.stretch, contact.stretch.length());
@@ -300,9 +313,10 @@ impl Motion<'_> {
                 // It yields: only the direction of the force changes.
                 grip = (grip - GRIP * outer(stretch, stretch) / (length * length)) * (most / length);
             }
-            let force = -gap * normal - GRIP * stretch.clamp_length_max(most);
-            contacts.add(s, stiffness * (across + grip), stiffness * force);
-            contacts.pull += stiffness * -gap * normal;
+            let force = push * normal - GRIP * stretch.clamp_length_max(most);
+            contacts.add(s, stiffness * (grows * across + grip), stiffness * force);
+            contacts.pull += stiffness * push * normal;
+            contacts.touches = true;
         }
         contacts
     }

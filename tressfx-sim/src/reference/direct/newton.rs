@@ -10,6 +10,8 @@ use super::{Motion, Rod, RodRest, outer};
 const HOLD: f64 = 1e4;
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f64 = 1.5;
+/// The same of a strand that touches something: what it touches is another surface after a longer one.
+const TOUCHING_TURN: f64 = 0.3;
 
 /// What holds an edge against a rotation about itself is never less than this share of all that holds it.
 const LEAST_TWIST: f64 = 1e-6;
@@ -35,6 +37,8 @@ struct Beyond {
     torque: DVec3,
     /// The sum of the forces alone.
     pull: DVec3,
+    /// Whether anything is touched.
+    touches: bool,
 }
 
 /// A round; gives the longest rotation of an edge, rad. Positions are left to be placed anew.
@@ -46,10 +50,11 @@ pub(super) fn round(motion: &Motion, rod: &mut Rod) -> f64 {
     for edge in (rest.held..edges).rev() {
         eliminated[edge] = eliminate(motion, rod, edge, &mut beyond);
     }
+    let most = if beyond.touches { TOUCHING_TURN } else { LONGEST_TURN };
     let (mut moved, mut parent, mut longest) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
     for (edge, left) in eliminated.iter().enumerate().skip(rest.held) {
         let Eliminated { free, by_parent, by_place } = *left;
-        let turn = (free + by_parent * parent - by_place * moved).clamp_length_max(LONGEST_TURN);
+        let turn = (free + by_parent * parent - by_place * moved).clamp_length_max(most);
         longest = longest.max(turn.length());
         moved += turn.cross(rod.frames[edge] * DVec3::Z) * rest.lengths[edge];
         rod.frames[edge] = (DQuat::from_scaled_axis(turn) * rod.frames[edge]).normalize();
@@ -78,7 +83,7 @@ fn at_tip(motion: &Motion, rod: &Rod) -> Beyond {
             turn = joint.stiffness(&stiffness);
         }
     }
-    Beyond { place, mixed: DMat3::ZERO, turn, force, torque, pull }
+    Beyond { place, mixed: DMat3::ZERO, turn, force, torque, pull, touches: false }
 }
 
 /// The stiffness of the spring that holds a tip, times the square of the sub-step.
@@ -139,6 +144,7 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
         // Equal to `spring * inverse * (torque + own) - own`, without the difference of two large numbers.
         torque: by_parent.transpose() * torque - turn * (inverse * own),
         pull: beyond.pull + force,
+        touches: beyond.touches || contacts.touches,
     };
     Eliminated { free, by_parent, by_place }
 }
