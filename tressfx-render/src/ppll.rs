@@ -40,7 +40,7 @@ const LABEL: Label = "hair.render.ppll";
 
 /// Lists that were bounded hold all fragments again where there may be room for so many times as many: a third walk less is worth more
 /// than the full headroom of a pool.
-const SPARE: f64 = 1.1;
+const SPARE: f64 = 1.02;
 
 /// What the kernels of this technique import.
 const LIBRARY: &[Module] = &with_shared::<7, 23>([

@@ -3,7 +3,7 @@
 import package::coverage::{between, coverage, pixel_reach, rise_of};
 import package::fragment::{Fragment, OPAQUE};
 import package::joint::{ROUND, SHARP};
-import package::ribbon::{Ribbon, along, slant_of};
+import package::ribbon::{Ribbon, along};
 import package::screen::{scene_nearness, view};
 
 @if(places)
@@ -31,10 +31,12 @@ const ELBOW: f32 = 0.75;
 // More than any segment has.
 const ENDLESS: f32 = 1e6;
 
-// The line through the middle of a ribbon.
+// The line through the middle of a ribbon, and what is the same in all of its pixels: not every compiler moves that out of a loop.
 struct Line {
     delta: vec2<f32>,
-    square: f32,
+    length: f32,
+    // One over it.
+    per_length: f32,
     normal: vec2<f32>,
     reach: vec2<f32>,
 }
@@ -45,9 +47,10 @@ fn line_of(ribbon: Ribbon) -> Line {
         delta = vec2(sqrt(SHORTEST), 0.0);
     }
     let square = dot(delta, delta);
-    let direction = delta * inverseSqrt(square);
+    let per_length = inverseSqrt(square);
+    let direction = delta * per_length;
     let normal = vec2(-direction.y, direction.x);
-    return Line(delta, square, normal, pixel_reach(normal));
+    return Line(delta, sqrt(square), per_length, normal, pixel_reach(normal));
 }
 
 // A pixel beside a ribbon: how far along it from its start, and across.
@@ -60,14 +63,19 @@ fn beside(ribbon: Ribbon, line: Line, pixel: vec2<u32>) -> vec2<f32> {
 // strand. They are divided at the bisectors of joints, half-open, so that segments share no pixel and leave none out.
 fn place_of(ribbon: Ribbon, line: Line, pixel: vec2<u32>) -> f32 {
     let at = beside(ribbon, line, pixel);
-    let is_behind = vec2(at.x, at.x - sqrt(line.square)) + vec2(-1.0, 1.0) * ribbon.tilt * at.y >= vec2(0.0);
+    let is_behind = vec2(at.x, at.x - line.length) + vec2(-1.0, 1.0) * ribbon.tilt * at.y >= vec2(0.0);
     let is_end = ribbon.tilt == vec2(ROUND);
     let is_own = (is_behind.x || is_end.x) && (!is_behind.y || is_end.y);
-    return select(-1.0, clamp(at.x * inverseSqrt(line.square), 0.0, LAST_PLACE), is_own);
+    return select(-1.0, clamp(at.x * line.per_length, 0.0, LAST_PLACE), is_own);
 }
 
 fn is_sharp(ribbon: Ribbon) -> vec2<bool> {
     return abs(ribbon.tilt) > vec2(SHARP);
+}
+
+// Whether the ribbon has an end of its own in the pixels: most segments go straight on at both ends.
+fn has_ends_of(ribbon: Ribbon) -> bool {
+    return any(is_sharp(ribbon));
 }
 
 // Pixels by which the ends go on behind their round ends.
@@ -86,34 +94,33 @@ fn pixel_length(ribbon: Ribbon, line: Line, owned: f32) -> f32 {
     return select(whole, clamp(2.0 * owned, SHORTEST_PIXEL, whole), has_joint);
 }
 
-// What the ribbon leaves in a pixel at `place` along it, wherever the scene is. Its colour is that of the surface that the pixel sees.
-fn fragment_on(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
+// What the ribbon leaves in a pixel at `place` along it, wherever the scene is. Its colour is that of the surface that the pixel sees, see
+// `slant_of`.
+fn fragment_on(ribbon: Ribbon, line: Line, slant: f32, paint: Paint, pixel: vec2<u32>, place: f32, has_ends: bool) -> Fragment {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
     // Of a thin fibre a pixel sees all of its width.
     var rise = MEAN_RISE * half_width;
     if half_width > THIN {
         rise = rise_of(beside(ribbon, line, pixel).y, half_width);
     }
-    let surface = along(ribbon, place) + rise * slant_of(view.lens, ribbon);
-    return fragment_showing(ribbon, line, paint, pixel, place, clamp(surface, -SURPLUS, 1.0 + SURPLUS));
+    let surface = along(ribbon, place) + rise * slant;
+    return fragment_showing(ribbon, line, paint, pixel, place, clamp(surface, -SURPLUS, 1.0 + SURPLUS), has_ends);
 }
 
 // The same with the colour of the axis.
 fn fragment_of_axis(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
-    return fragment_showing(ribbon, line, paint, pixel, place, along(ribbon, place));
+    return fragment_showing(ribbon, line, paint, pixel, place, along(ribbon, place), has_ends_of(ribbon));
 }
 
 // What the ribbon leaves in a pixel at `place` along it, with the colour that the segment has at `shown`.
-fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32, shown: f32) -> Fragment {
+fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32, shown: f32, has_ends: bool) -> Fragment {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
     let at = beside(ribbon, line, pixel);
     var covered = coverage(at.y, half_width, line.reach);
-    // Most segments go straight on at both ends.
-    if any(is_sharp(ribbon)) {
-        let length = sqrt(line.square);
+    if has_ends {
         let rise = rise_of(at.y, half_width);
         let ends = rise + slack_of(ribbon);
-        covered *= between(at.x + ends.x, length - at.x + ends.y, pixel_length(ribbon, line, length + rise));
+        covered *= between(at.x + ends.x, line.length - at.x + ends.y, pixel_length(ribbon, line, line.length + rise));
     }
     let color = max(mix(paint.start.rgb, paint.end.rgb, shown), vec3(0.0));
     let opacity = mix(paint.start.a, paint.end.a, along(ribbon, place));
@@ -124,13 +131,13 @@ fn fragment_showing(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, 
 }
 
 // What the ribbon leaves in a pixel: nothing in one of another segment, and nothing behind the scene.
-fn fragment_at(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>) -> Fragment {
+fn fragment_at(ribbon: Ribbon, line: Line, slant: f32, paint: Paint, pixel: vec2<u32>, has_ends: bool) -> Fragment {
     let place = place_of(ribbon, line, pixel);
     if place < 0.0 {
         return Fragment();
     }
     let scene = scene_nearness(pixel);
-    var fragment = fragment_on(ribbon, line, paint, pixel, place);
+    var fragment = fragment_on(ribbon, line, slant, paint, pixel, place, has_ends);
     fragment.alpha = select(fragment.alpha, 0u, fragment.nearness < scene);
     return fragment;
 }

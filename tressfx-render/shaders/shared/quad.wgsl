@@ -1,8 +1,8 @@
 // A quad over a segment: the raster units visit the pixels that the walk visits, and some more.
 
 import package::fragment::Fragment;
-import package::line::{Paint, fragment_at, is_drawn, line_of, overshoot};
-import package::ribbon::{Ribbon, scale_of};
+import package::line::{Paint, fragment_at, has_ends_of, is_drawn, line_of, overshoot};
+import package::ribbon::{Ribbon, scale_of, slant_of};
 import package::screen::view;
 import package::strands::{paint_of, ribbon_of, section, strand_at};
 
@@ -17,6 +17,7 @@ struct Corner {
     @location(2) @interpolate(flat) part_and_tilt: vec4<f32>,
     @location(3) @interpolate(flat) paint_start: vec4<f32>,
     @location(4) @interpolate(flat) paint_end: vec4<f32>,
+    @location(5) @interpolate(flat) slant: f32,
 }
 
 // Six vertices a segment, two triangles.
@@ -27,7 +28,7 @@ fn corner_of(vertex: u32) -> Corner {
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         // All corners in one point: nothing is drawn.
-        return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+        return Corner(vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0.0);
     }
     let paint = paint_of(strand, segment / section.lod.strands);
     let direction = vec2(line.normal.y, -line.normal.x);
@@ -45,6 +46,7 @@ fn corner_of(vertex: u32) -> Corner {
         vec4(ribbon.part, ribbon.tilt),
         paint.start,
         paint.end,
+        slant_of(view.lens, ribbon),
     );
 }
 
@@ -64,5 +66,5 @@ fn fragment_of(corner: Corner) -> Fragment {
     let scale = scale_of(view.lens, widths.zw);
     let joints = corner.part_and_tilt;
     let ribbon = Ribbon(corner.ends.xy, corner.ends.zw, widths.xy, widths.zw, joints.xy, scale, joints.zw, true);
-    return fragment_at(ribbon, line_of(ribbon), Paint(corner.paint_start, corner.paint_end), pixel);
+    return fragment_at(ribbon, line_of(ribbon), corner.slant, Paint(corner.paint_start, corner.paint_end), pixel, has_ends_of(ribbon));
 }

@@ -2,24 +2,46 @@
 // the triangles that they were made for: so the segment finds its own pixels. What becomes of a fragment is up to the
 // technique: it brings a module `sink` with a struct `Sink` and a function `take(sink, pixel, fragment)`.
 
-import package::line::{Paint, fragment_at, is_drawn, line_of, middle_of, span_of};
-import package::ribbon::Ribbon;
+import package::line::{Line, Paint, Span, fragment_at, has_ends_of, is_drawn, line_of, middle_of, span_of};
+import package::ribbon::{Ribbon, slant_of};
+import package::screen::view;
 import package::sink::{Sink, take};
 import package::strands::{paint_of, ribbon_of, section, strand_at};
 
-// Visits the pixels that the ribbon may touch, column by column along the axis that it follows most.
+// Visits the pixels that the ribbon may touch. Where it has ends a fragment is more work: such ribbons have a loop of their own, since a loop that
+// no lane is in is left, where a CPU takes all lanes through both sides of a branch.
 fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         return;
     }
     let span = span_of(ribbon, line);
-    for (var column = span.first_column; column <= span.last_column; column++) {
-        let middle = middle_of(span, column);
-        let last_row = min(i32(floor(middle + span.half_height)), span.size.y - 1);
-        for (var row = max(i32(ceil(middle - span.half_height)), 0); row <= last_row; row++) {
+    visit(ribbon, line, paint, span, false, sink);
+    visit(ribbon, line, paint, span, true, sink);
+}
+
+// Visits them if the ribbon has ends, or if it has none: column by column along the axis that it follows most. In one loop, so that no lane waits at
+// the end of a column for those with more rows.
+fn visit(ribbon: Ribbon, line: Line, paint: Paint, span: Span, has_ends: bool, sink: ptr<function, Sink>) {
+    let slant = slant_of(view.lens, ribbon);
+    let last_column = select(-1, span.last_column, has_ends_of(ribbon) == has_ends);
+    var column = span.first_column - 1;
+    var row = 0;
+    var last_row = -1;
+    loop {
+        if row >= last_row {
+            column++;
+            let middle = middle_of(span, column);
+            last_row = min(i32(floor(middle + span.half_height)), span.size.y - 1);
+            row = max(i32(ceil(middle - span.half_height)), 0) - 1;
+        }
+        if column > last_column {
+            break;
+        }
+        row++;
+        if row <= last_row {
             let pixel = vec2<u32>(select(vec2(column, row), vec2(row, column), span.steep));
-            let fragment = fragment_at(ribbon, line, paint, pixel);
+            let fragment = fragment_at(ribbon, line, slant, paint, pixel, has_ends);
             if fragment.alpha > 0u {
                 take(sink, pixel, fragment);
             }

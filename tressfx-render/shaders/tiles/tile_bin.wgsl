@@ -44,7 +44,7 @@ struct Reach {
 fn reach_of(line: Line, span: Span) -> Reach {
     let along = select(line.delta, line.delta.yx, span.steep);
     let of_column = 1.0 / along.x;
-    return Reach(of_column, (span.half_height + PIXEL_MARGIN) * abs(along.y) / line.square + PIXEL_MARGIN * abs(of_column));
+    return Reach(of_column, (span.half_height + PIXEL_MARGIN) * abs(along.y) * line.per_length * line.per_length + PIXEL_MARGIN * abs(of_column));
 }
 
 // Nearness of the farthest and of the nearest fragment that a ribbon may leave in columns.
