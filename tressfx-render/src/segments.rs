@@ -31,6 +31,11 @@ pub(crate) struct Shaders {
     pub(crate) library: &'static [Module],
 }
 
+/// What a kernel is compiled for that walks over the pixels of segments (`walk.wgsl`): on a CPU, too, that those with ends have a loop of their own.
+pub(crate) fn walking(backend: &dyn Backend, specialization: &Specialization) -> Specialization {
+    specialization.clone().feature("ends_apart", backend.caps().is_cpu)
+}
+
 #[derive(Debug)]
 enum Pipeline {
     Compute(Kernel),
@@ -57,7 +62,8 @@ impl Segments {
         let pipeline = match fill {
             Fill::Compute => {
                 let (label, root) = shaders.compute;
-                Pipeline::Compute(compute(backend, label, root, shaders.library, specialization)?)
+                let specialization = walking(backend, specialization);
+                Pipeline::Compute(compute(backend, label, root, shaders.library, &specialization)?)
             }
             Fill::Raster => {
                 let (label, root) = shaders.raster;
@@ -76,7 +82,8 @@ impl Segments {
         library: &'static [Module],
         specialization: &Specialization,
     ) -> Result<Self> {
-        let kernel = compute(backend, label, root, library, specialization)?;
+        let specialization = walking(backend, specialization);
+        let kernel = compute(backend, label, root, library, &specialization)?;
         Ok(Self { pipeline: Pipeline::Compute(kernel), bound: Bound::new() })
     }
 

@@ -8,23 +8,32 @@ import package::screen::view;
 import package::sink::{Sink, take};
 import package::strands::{paint_of, ribbon_of, section, strand_at};
 
-// Visits the pixels that the ribbon may touch. Where it has ends a fragment is more work: such ribbons have a loop of their own, since a loop that
-// no lane is in is left, where a CPU takes all lanes through both sides of a branch.
+// Visits the pixels that the ribbon may touch. Where it has ends a fragment is more work. A CPU takes all lanes through both sides of a branch, but
+// leaves a loop that no lane is in: there ribbons with ends have a loop of their own.
 fn walk(ribbon: Ribbon, paint: Paint, sink: ptr<function, Sink>) {
     let line = line_of(ribbon);
     if !is_drawn(ribbon, line) {
         return;
     }
     let span = span_of(ribbon, line);
-    visit(ribbon, line, paint, span, false, sink);
-    visit(ribbon, line, paint, span, true, sink);
+    let has_ends = has_ends_of(ribbon);
+    @if(ends_apart) {
+        visit(ribbon, line, paint, span_if(!has_ends, span), false, sink);
+        visit(ribbon, line, paint, span_if(has_ends, span), true, sink);
+    }
+    @if(!ends_apart) { visit(ribbon, line, paint, span, has_ends, sink); }
 }
 
-// Visits them if the ribbon has ends, or if it has none: column by column along the axis that it follows most. In one loop, so that no lane waits at
-// the end of a column for those with more rows.
+@if(ends_apart)
+fn span_if(is_visited: bool, span: Span) -> Span {
+    var visited = span;
+    visited.last_column = select(-1, span.last_column, is_visited);
+    return visited;
+}
+
+// Column by column along the axis that the ribbon follows most. In one loop, so that no lane waits at the end of a column for those with more rows.
 fn visit(ribbon: Ribbon, line: Line, paint: Paint, span: Span, has_ends: bool, sink: ptr<function, Sink>) {
     let slant = slant_of(view.lens, ribbon);
-    let last_column = select(-1, span.last_column, has_ends_of(ribbon) == has_ends);
     var column = span.first_column - 1;
     var row = 0;
     var last_row = -1;
@@ -35,7 +44,7 @@ fn visit(ribbon: Ribbon, line: Line, paint: Paint, span: Span, has_ends: bool, s
             last_row = min(i32(floor(middle + span.half_height)), span.size.y - 1);
             row = max(i32(ceil(middle - span.half_height)), 0) - 1;
         }
-        if column > last_column {
+        if column > span.last_column {
             break;
         }
         row++;

@@ -5,6 +5,7 @@ use tressfx_core::error::Result;
 use tressfx_core::shader::{Kernel, Module};
 
 use crate::output::walk;
+use crate::segments::walking;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
@@ -12,5 +13,6 @@ const LIBRARY: &[Module] =
 
 pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_keys", include_str!("../../shaders/velocity/seen_keys.wgsl"));
-    compute(backend, "hair.render.seen_keys", root, LIBRARY, &walk(copies))
+    let specialization = walking(backend, &walk(copies));
+    compute(backend, "hair.render.seen_keys", root, LIBRARY, &specialization)
 }

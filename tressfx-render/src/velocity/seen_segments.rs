@@ -6,6 +6,7 @@ use tressfx_core::shader::{Kernel, Module};
 
 use super::MOTION;
 use crate::output::walk;
+use crate::segments::walking;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
@@ -13,5 +14,6 @@ const LIBRARY: &[Module] =
 
 pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_segments", include_str!("../../shaders/velocity/seen_segments.wgsl"));
-    compute(backend, "hair.render.seen_segments", root, LIBRARY, &walk(copies))
+    let specialization = walking(backend, &walk(copies));
+    compute(backend, "hair.render.seen_segments", root, LIBRARY, &specialization)
 }
