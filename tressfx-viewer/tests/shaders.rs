@@ -116,6 +116,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "clump",
         "contacts",
         "copies",
+        "ends_apart",
         "few_turns",
         "fibre",
         "fields",
