@@ -18,7 +18,7 @@ use crate::views::BoundView;
 const LABEL: &str = "hair.render.composite";
 const COMPUTE: &str = "hair.render.composite_compute";
 
-const LIBRARY: &[Module] = &with_shared::<1, 17>([CORNER]);
+const LIBRARY: &[Module] = &with_shared::<1, 19>([CORNER]);
 
 /// Groups that lay tiles over the picture, at most: each takes one after the other.
 const MOST_GROUPS: u32 = 4096;

@@ -52,6 +52,7 @@ mod lights;
 mod lod;
 mod look;
 mod material;
+mod occlusion;
 mod output;
 mod own_look;
 mod places;

@@ -15,6 +15,7 @@ use tressfx_core::shader::{Kernel, Module};
 use tressfx_core::view::View;
 
 use crate::composite::Composite;
+use crate::occlusion::Occlusion;
 use crate::counters::Counters;
 use crate::output::Output;
 use crate::places::check_places;
@@ -43,7 +44,7 @@ const LABEL: Label = "hair.render.ppll";
 const SPARE: f64 = 1.02;
 
 /// What the kernels of this technique import.
-const LIBRARY: &[Module] = &with_shared::<7, 23>([
+const LIBRARY: &[Module] = &with_shared::<7, 25>([
     FRONT,
     PIXELS,
     ("kept", include_str!("../shaders/ppll/kept.wgsl")),
@@ -63,7 +64,7 @@ pub struct PpllDesc {
     /// What is seen of the rest.
     pub tail: Tail,
     /// How many fragments of a pixel may take memory; `None` for all. The nearest do, the others are merged as they come: the
-    /// opacity of the pixel is the same, and from `k` on the whole picture. The memory is bounded then, and takes 20 bytes and
+    /// opacity of the pixel is the same, and from `k` on the whole picture. The memory is bounded then, and takes 24 bytes and
     /// 4 for each of the nearest a pixel, and a third walk over the strands. Lists become so by themselves where there would be
     /// more fragments than there may be room for.
     pub cap: Option<u32>,
@@ -76,6 +77,9 @@ pub struct PpllDesc {
     /// Places in a pixel where light passes hair for itself, one of [`PLACES`](crate::PLACES). The fragments behind the `k` nearest
     /// cover all of them alike.
     pub places: u32,
+    /// Whether hair is left out that is behind hair which lets less than a thousandth through: it takes neither memory nor part in the colour
+    /// of a tail. None: where hair is predicted to be dense.
+    pub skips_hidden: Option<bool>,
 }
 
 impl PpllDesc {
@@ -121,6 +125,12 @@ impl PpllDesc {
         Self { places, ..self }
     }
 
+    /// The same, always with or always without hair that other hair hides.
+    #[must_use]
+    pub fn skips_hidden(self, skips_hidden: impl Into<Option<bool>>) -> Self {
+        Self { skips_hidden: skips_hidden.into(), ..self }
+    }
+
     /// The largest [`PpllDesc::count_limit`]. Up to twice as many can be asked for before the counter is seen to be full, and
     /// that still has to fit into 32 bits.
     pub const COUNT_LIMIT: u32 = i32::MAX as u32;
@@ -139,7 +149,7 @@ impl Default for PpllDesc {
     /// Eight sorted fragments a pixel, and room for at most 16.7 million fragments in all.
     fn default() -> Self {
         let (count_limit, fill) = (Self::COUNT_LIMIT, Fill::Compute);
-        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill, places: 1 }
+        Self { k: 8, tail: Tail::default(), cap: None, max_node_bytes: 256 << 20, count_limit, fill, places: 1, skips_hidden: None }
     }
 }
 
@@ -160,6 +170,7 @@ pub(crate) struct Ppll {
     composite: Composite,
     pool: NodePool,
     bounded: Bounded,
+    occlusion: Occlusion,
     /// Where lists are bounded: how many fragments of a pixel have nodes.
     kept: u32,
     /// Where lists were bounded because of a prediction: views that are still to be measured, and the most fragments of those that
@@ -191,6 +202,7 @@ impl Ppll {
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
             bounded: Bounded::default(),
+            occlusion: Occlusion::new(desc.skips_hidden, size, output),
             kept: 0,
             unproven: None,
             views: 1,
@@ -295,6 +307,15 @@ impl Ppll {
         Ok(())
     }
 
+    /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
+    fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        if self.occlusion.prepare(backend)? {
+            self.fill.prepare_lists(backend)?;
+            self.forget_bindings();
+        }
+        self.bounded.prepare_lists(backend, self.occlusion.is_ready())
+    }
+
     /// Gives back all nodes, until more are reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
         let variant = self.desc.variant(self.desc.cap.is_some(), self.output);
@@ -306,6 +327,7 @@ impl Ppll {
         if self.desc.cap.is_none() {
             self.bounded.turn_off(backend);
         }
+        self.occlusion.release(backend);
         (self.unproven, self.usage) = (None, Usage::new());
         self.forget_bindings();
         Ok(())
@@ -336,17 +358,21 @@ impl TechniqueInstance for Ppll {
         }
         std::mem::replace(&mut self.pool, pool).destroy(backend);
         std::mem::replace(&mut self.resolved, resolved).destroy(backend);
+        self.occlusion.resize(backend, size);
         self.size = size;
         self.forget_bindings();
         Ok(())
     }
 
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
-        self.reserve(backend, predict::fragments(view, draws) as u64)
+        let fragments = self.occlusion.predict(backend, view, draws, predict::fragments(view, draws));
+        self.prepare_occlusion(backend)?;
+        self.reserve(backend, fragments as u64)
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
+        self.prepare_occlusion(backend)?;
         let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
         let settled = self.usage.measured(needed);
         self.grow(backend, counters)?;
@@ -366,7 +392,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn retune(&mut self, backend: &mut dyn Backend, technique: &Technique) -> Result<()> {
-        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill, desc.places);
+        let fixed = |desc: &PpllDesc| (desc.max_node_bytes, desc.count_limit, desc.fill, desc.places, desc.skips_hidden);
         let Technique::Ppll(desc) = technique else { return Err(another_technique(LABEL)) };
         check_k(LABEL, desc.k, &K_RANGE)?;
         if fixed(desc) != fixed(&self.desc) {
@@ -393,7 +419,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn bytes(&self) -> u64 {
-        self.pool.bytes(self.size) + self.bounded.bytes() + self.resolved.bytes(self.size)
+        self.pool.bytes(self.size) + self.bounded.bytes() + self.occlusion.bytes() + self.resolved.bytes(self.size)
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
@@ -403,6 +429,7 @@ impl TechniqueInstance for Ppll {
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.fill.begin_frame();
         self.bounded.begin_frame();
+        self.occlusion.begin_frame();
         self.resolve.bound.begin_frame();
         self.composite.bound.begin_frame();
         self.pool.begin(list, views);
@@ -417,18 +444,23 @@ impl TechniqueInstance for Ppll {
     }
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
-        view.region.clear(list, self.pool.heads, HEAD_BYTES);
         self.resolved.clear(list);
+        let occluded = self.occlusion.passes(list, view, draws, targets)?;
+        let occluded = occluded.as_ref();
         let own = self.pool.bindings(view);
         match self.bounded.passes() {
-            None => self.fill.passes(list, view, draws, targets, &own)?,
+            None => {
+                view.region.clear(list, self.pool.heads, HEAD_BYTES);
+                let own = [&own[..], &[("heads", self.pool.heads.into())]].concat();
+                self.fill.passes(list, view, draws, targets, &own, occluded)?;
+            }
             Some(passes) => {
                 passes.clear(list, &view.region, self.kept);
                 if self.kept > 0 {
-                    passes.nearest.passes(list, view, draws, targets, &[own[0], passes.keys])?;
+                    passes.nearest.passes(list, view, draws, targets, &[own[0], passes.keys], occluded)?;
                 }
                 let own = [&own[..], &[passes.keys, passes.rest]].concat();
-                passes.fill.passes(list, view, draws, targets, &own)?;
+                passes.fill.passes(list, view, draws, targets, &own, occluded)?;
             }
         }
         self.resolve.pass(list, view, &self.pool, &self.resolved, self.bounded.rest())?;

@@ -7,6 +7,7 @@ use tressfx_core::pass::{Draw, Grid, Load, PassList, RasterPass};
 use tressfx_core::shader::{Binding, Kernel, Module, RasterPipeline, Specialization};
 
 use crate::bound::Bound;
+use crate::occlusion::{Listed, Occluded};
 use crate::renderer::Targets;
 use crate::shaders::{GROUP, compute, shader};
 use crate::strands::SectionDraw;
@@ -24,10 +25,12 @@ pub enum Fill {
     Raster,
 }
 
-/// The two shaders that do the same: their labels and the modules with their entry points.
+/// Two shaders that do the same: their labels and the modules with their entry points.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Shaders {
     pub(crate) compute: (Label, Module),
-    pub(crate) raster: (Label, Module),
+    /// None where nothing is gained by the raster units.
+    pub(crate) raster: Option<(Label, Module)>,
     pub(crate) library: &'static [Module],
 }
 
@@ -42,12 +45,50 @@ enum Pipeline {
     Raster(RasterPipeline),
 }
 
+/// How a pipeline of [`Segments`] is made.
+#[derive(Debug)]
+struct Recipe {
+    fill: Fill,
+    shaders: Shaders,
+    specialization: Specialization,
+    /// Format of the picture.
+    target: Format,
+}
+
+impl Recipe {
+    /// Of all segments before the scene, or of those of lists before what is opaque.
+    fn make(&self, backend: &mut dyn Backend, is_listed: bool) -> Result<Walk> {
+        let specialization = self.specialization.clone().feature("listed", is_listed).feature("occluded", is_listed);
+        let library = self.shaders.library;
+        let pipeline = match (self.fill, self.shaders.raster) {
+            (Fill::Raster, Some((label, root))) => {
+                let shader = shader(label, root, library, &specialization)?;
+                Pipeline::Raster(backend.create_raster(&RasterDesc::new(shader).target(self.target, Blend::Over))?)
+            }
+            _ => {
+                let (label, root) = self.shaders.compute;
+                let specialization = walking(backend, &specialization);
+                Pipeline::Compute(compute(backend, label, root, library, &specialization)?)
+            }
+        };
+        Ok(Walk { pipeline, bound: Bound::new() })
+    }
+}
+
+/// A pipeline, and its bindings by view, section and scene.
+#[derive(Debug)]
+struct Walk {
+    pipeline: Pipeline,
+    bound: Bound<(usize, BufferId, TextureId)>,
+}
+
 /// Such a pass.
 #[derive(Debug)]
 pub(crate) struct Segments {
-    pipeline: Pipeline,
-    /// By view, section and scene.
-    bound: Bound<(usize, BufferId, TextureId)>,
+    recipe: Recipe,
+    all: Walk,
+    /// The same over lists, once it was needed.
+    listed: Option<Walk>,
 }
 
 impl Segments {
@@ -55,48 +96,36 @@ impl Segments {
     pub(crate) fn new(
         backend: &mut dyn Backend,
         fill: Fill,
-        shaders: &Shaders,
+        shaders: Shaders,
         specialization: &Specialization,
         target: Format,
     ) -> Result<Self> {
-        let pipeline = match fill {
-            Fill::Compute => {
-                let (label, root) = shaders.compute;
-                let specialization = walking(backend, specialization);
-                Pipeline::Compute(compute(backend, label, root, shaders.library, &specialization)?)
-            }
-            Fill::Raster => {
-                let (label, root) = shaders.raster;
-                let shader = shader(label, root, shaders.library, specialization)?;
-                Pipeline::Raster(backend.create_raster(&RasterDesc::new(shader).target(target, Blend::Over))?)
-            }
-        };
-        Ok(Self { pipeline, bound: Bound::new() })
+        let recipe = Recipe { fill, shaders, specialization: specialization.clone(), target };
+        Ok(Self { all: recipe.make(backend, false)?, listed: None, recipe })
     }
 
-    /// A pass that has no raster pass beside it.
-    pub(crate) fn compute(
-        backend: &mut dyn Backend,
-        label: Label,
-        root: Module,
-        library: &'static [Module],
-        specialization: &Specialization,
-    ) -> Result<Self> {
-        let specialization = walking(backend, specialization);
-        let kernel = compute(backend, label, root, library, &specialization)?;
-        Ok(Self { pipeline: Pipeline::Compute(kernel), bound: Bound::new() })
+    /// Makes what it takes to walk lists.
+    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        if self.listed.is_none() {
+            self.listed = Some(self.recipe.make(backend, true)?);
+        }
+        Ok(())
+    }
+
+    fn walks(&mut self) -> impl Iterator<Item = &mut Walk> {
+        std::iter::once(&mut self.all).chain(&mut self.listed)
     }
 
     pub(crate) fn begin_frame(&mut self) {
-        self.bound.begin_frame();
+        self.walks().for_each(|walk| walk.bound.begin_frame());
     }
 
     /// Forgets what it has bound: it has been replaced.
     pub(crate) fn forget_bindings(&mut self) {
-        self.bound.clear();
+        self.walks().for_each(|walk| walk.bound.clear());
     }
 
-    /// Writes the passes of all sections. `own` is what the technique binds, beside what the strands do.
+    /// Writes the passes of all sections: over what is `occluded`, where that is known. `own` is what the technique binds, beside what the strands do.
     pub(crate) fn passes(
         &mut self,
         list: &mut PassList,
@@ -104,24 +133,43 @@ impl Segments {
         draws: &[SectionDraw],
         targets: &Targets,
         own: &[(&'static str, Binding)],
+        occluded: Option<&Occluded>,
     ) -> Result<()> {
-        let Self { pipeline, bound } = self;
-        let key = |draw: &SectionDraw| (view.index, draw.strands.colors, targets.depth);
-        let all = |draw: &SectionDraw| [&draw.strands.bindings(view, targets.depth)[..], own].concat();
+        let (walk, occluded) = match (&mut self.listed, occluded) {
+            (Some(walk), Some(occluded)) => (walk, Some(occluded)),
+            _ => (&mut self.all, None),
+        };
+        let scene = occluded.map_or(targets.depth, |occluded| occluded.depth);
+        let listed = |index: usize| occluded.map(|occluded| &occluded.lists[index]);
+        let key = |draw: &SectionDraw| (view.index, draw.strands.colors, scene);
+        let all = |index: usize, draw: &SectionDraw| {
+            let mut all = [&draw.strands.bindings(view, scene)[..], own].concat();
+            all.extend(listed(index).map(Listed::binding));
+            all
+        };
+        let Walk { pipeline, bound } = walk;
         match pipeline {
             Pipeline::Compute(kernel) => {
-                for draw in draws {
-                    let bindings = bound.get(key(draw), || kernel.bind(&all(draw)))?;
-                    let segments = draw.segments();
-                    list.compute(kernel, &bindings, Grid::for_threads(segments, GROUP));
+                for (index, draw) in draws.iter().enumerate() {
+                    let bindings = bound.get(key(draw), || kernel.bind(&all(index, draw)))?;
+                    match listed(index) {
+                        Some(&Listed { groups: (buffer, offset), .. }) => {
+                            list.compute_indirect(kernel, &bindings, buffer, offset);
+                        }
+                        None => list.compute(kernel, &bindings, Grid::for_threads(draw.segments(), GROUP)),
+                    }
                 }
             }
             Pipeline::Raster(pipeline) => {
                 let mut pass = RasterPass::new(pipeline.label()).color(targets.color, Load::Keep);
-                for draw in draws {
-                    let bindings = bound.get(key(draw), || pipeline.bind(&all(draw)))?;
-                    let segments = draw.segments();
-                    pass = pass.draw(Draw::new(pipeline, &bindings, 6 * segments, 1));
+                for (index, draw) in draws.iter().enumerate() {
+                    let bindings = bound.get(key(draw), || pipeline.bind(&all(index, draw)))?;
+                    pass = pass.draw(match listed(index) {
+                        Some(&Listed { draw: (buffer, offset), .. }) => {
+                            Draw::indirect(pipeline, &bindings, buffer, offset)
+                        }
+                        None => Draw::new(pipeline, &bindings, 6 * draw.segments(), 1),
+                    });
                 }
                 list.raster(pass);
             }
@@ -131,7 +179,7 @@ impl Segments {
 
     #[cfg(test)]
     pub(crate) fn shader(&self) -> &tressfx_core::shader::Shader {
-        match &self.pipeline {
+        match &self.all.pipeline {
             Pipeline::Compute(kernel) => &kernel.shader,
             Pipeline::Raster(pipeline) => &pipeline.shader,
         }

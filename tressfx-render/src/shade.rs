@@ -12,7 +12,7 @@ use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: [Module; 17] = with_shared([("scattering", include_str!("../shaders/scattering.wgsl"))]);
+const LIBRARY: [Module; 19] = with_shared([("scattering", include_str!("../shaders/scattering.wgsl"))]);
 
 /// The kernels of one way to scatter light.
 #[derive(Debug)]

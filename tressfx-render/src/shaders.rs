@@ -14,7 +14,7 @@ pub const VIEW_MODULE: Module = ("view", include_str!("../shaders/shared/view.wg
 
 /// What all kernels may import. `walk` asks for a module `sink`, which is the technique's; so does `quad`, which
 /// imports from it.
-pub(crate) const SHARED: [Module; 16] = [
+pub(crate) const SHARED: [Module; 18] = [
     VIEW_MODULE,
     ("counters", include_str!("../shaders/shared/counters.wgsl")),
     ("coverage", include_str!("../shaders/shared/coverage.wgsl")),
@@ -22,7 +22,9 @@ pub(crate) const SHARED: [Module; 16] = [
     ("joint", include_str!("../shaders/shared/joint.wgsl")),
     ("lighting", include_str!("../shaders/shared/lighting.wgsl")),
     ("line", include_str!("../shaders/shared/line.wgsl")),
+    ("listed", include_str!("../shaders/shared/listed.wgsl")),
     ("places", include_str!("../shaders/shared/places.wgsl")),
+    ("points", include_str!("../shaders/shared/points.wgsl")),
     ("quad", include_str!("../shaders/shared/quad.wgsl")),
     ("ribbon", include_str!("../shaders/shared/ribbon.wgsl")),
     ("screen", include_str!("../shaders/shared/screen.wgsl")),
@@ -61,9 +63,9 @@ pub(crate) fn shader(
     library: &'static [Module],
     specialization: &Specialization,
 ) -> Result<Arc<Shader>> {
-    // A fragment has one opacity, and a strand no copies, unless somebody asks for more.
+    // A fragment has one opacity, a strand no copies, and all segments are walked before the scene, unless somebody asks for more.
     let mut specialization = specialization.clone();
-    for feature in ["places", "copies"] {
+    for feature in ["places", "copies", "listed", "occluded"] {
         if specialization.features().iter().all(|(name, _)| *name != feature) {
             specialization = specialization.feature(feature, false);
         }

@@ -22,7 +22,9 @@ use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::counters::Counters;
+use crate::occlusion::Occlusion;
 use crate::output::Output;
+use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
 use crate::segments::{Fill, Segments};
@@ -42,6 +44,8 @@ pub struct ShortCutDesc {
     pub ordered: bool,
     /// What turns segments of strands into fragments.
     pub fill: Fill,
+    /// Whether hair is left out that is behind hair which lets less than a thousandth through: dense hair is faster, for more memory.
+    pub skips_hidden: bool,
 }
 
 impl ShortCutDesc {
@@ -66,6 +70,12 @@ impl ShortCutDesc {
         Self { fill, ..self }
     }
 
+    /// The same, with or without hair that other hair hides.
+    #[must_use]
+    pub fn skips_hidden(self, skips_hidden: bool) -> Self {
+        Self { skips_hidden, ..self }
+    }
+
     fn specialization(&self, output: Output) -> Specialization {
         output.specialization().feature("ordered", self.ordered).constant("K", self.k)
     }
@@ -74,7 +84,7 @@ impl ShortCutDesc {
 impl Default for ShortCutDesc {
     /// The mean of three layers.
     fn default() -> Self {
-        Self { k: 3, ordered: false, fill: Fill::Compute }
+        Self { k: 3, ordered: false, fill: Fill::Compute, skips_hidden: false }
     }
 }
 
@@ -92,6 +102,7 @@ pub(crate) struct ShortCut {
     depths: Segments,
     colors: Segments,
     resolve: resolve::Resolve,
+    occlusion: Occlusion,
     composite: Composite,
     memory: Memory,
 }
@@ -110,12 +121,24 @@ impl ShortCut {
         Ok(Self {
             desc: *desc,
             output,
-            depths: Segments::new(backend, desc.fill, &depths::SHADERS, &k, output.color)?,
-            colors: Segments::new(backend, desc.fill, &colors::SHADERS, &desc.specialization(output), output.color)?,
+            depths: Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?,
+            colors: Segments::new(backend, desc.fill, colors::SHADERS, &desc.specialization(output), output.color)?,
             resolve: resolve::Resolve::new(backend, desc, output)?,
+            occlusion: Occlusion::new(Some(desc.skips_hidden), size, output),
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
         })
+    }
+
+    /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
+    fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        if self.occlusion.prepare(backend)? {
+            self.depths.prepare_lists(backend)?;
+            self.colors.prepare_lists(backend)?;
+            self.depths.forget_bindings();
+            self.colors.forget_bindings();
+        }
+        Ok(())
     }
 
     #[cfg(test)]
@@ -130,6 +153,7 @@ impl TechniqueInstance for ShortCut {
         check(backend, &self.desc, size, self.output)?;
         let memory = Memory::new(backend, size, &self.desc, self.output)?;
         std::mem::replace(&mut self.memory, memory).destroy(backend);
+        self.occlusion.resize(backend, size);
         self.depths.forget_bindings();
         self.colors.forget_bindings();
         self.resolve.bound.clear();
@@ -138,11 +162,13 @@ impl TechniqueInstance for ShortCut {
     }
 
     /// There is no pool.
-    fn make_room(&mut self, _: &mut dyn Backend, _: &View, _: &[SectionDraw]) -> Result<()> {
-        Ok(())
+    fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
+        self.occlusion.predict(backend, view, draws, predict::fragments(view, draws));
+        self.prepare_occlusion(backend)
     }
 
-    fn measured(&mut self, _: &mut dyn Backend, _: &Counters) -> Result<bool> {
+    fn measured(&mut self, backend: &mut dyn Backend, _: &Counters) -> Result<bool> {
+        self.prepare_occlusion(backend)?;
         Ok(false)
     }
 
@@ -155,7 +181,7 @@ impl TechniqueInstance for ShortCut {
     }
 
     fn bytes(&self) -> u64 {
-        self.memory.bytes
+        self.memory.bytes + self.occlusion.bytes()
     }
 
     fn counters(&self, view: usize) -> (BufferId, u64) {
@@ -163,6 +189,7 @@ impl TechniqueInstance for ShortCut {
     }
 
     fn begin(&mut self, list: &mut PassList, views: usize, _: &[SectionDraw]) {
+        self.occlusion.begin_frame();
         self.depths.begin_frame();
         self.colors.begin_frame();
         self.resolve.bound.begin_frame();
@@ -176,8 +203,10 @@ impl TechniqueInstance for ShortCut {
 
     fn draw(&mut self, list: &mut PassList, view: &BoundView, targets: &Targets, draws: &[SectionDraw]) -> Result<()> {
         self.memory.clear(list, &view.region, &self.desc);
-        self.depths.passes(list, view, draws, targets, &self.memory.of_depths(view))?;
-        self.colors.passes(list, view, draws, targets, &self.memory.of_colors(&self.desc))?;
+        let occluded = self.occlusion.passes(list, view, draws, targets)?;
+        let occluded = occluded.as_ref();
+        self.depths.passes(list, view, draws, targets, &self.memory.of_depths(view), occluded)?;
+        self.colors.passes(list, view, draws, targets, &self.memory.of_colors(&self.desc), occluded)?;
         self.resolve.pass(list, view, &self.memory)?;
         self.composite.pass(list, view, &self.memory.resolved, targets)
     }

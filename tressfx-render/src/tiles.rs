@@ -31,7 +31,7 @@ use memory::{Memory, is_tight};
 
 #[cfg(test)]
 pub(crate) use layout::TilesUniform;
-pub(crate) use layout::{MAX_VERTICES, vertices};
+pub(crate) use layout::{MAX_VERTICES, distances, vertices};
 pub(crate) use memory::Vertices;
 
 /// Exact order in tiles.

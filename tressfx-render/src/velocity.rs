@@ -31,7 +31,7 @@ const LABEL: &str = "hair.render.velocity";
 /// What a section has moved by, for a shader.
 const MOTION: Module = ("motion", include_str!("../shaders/velocity/motion.wgsl"));
 
-const LIBRARY: &[Module] = &with_shared::<2, 18>([CORNER, MOTION]);
+const LIBRARY: &[Module] = &with_shared::<2, 20>([CORNER, MOTION]);
 
 /// A number for each pixel of the largest view.
 #[derive(Debug)]

@@ -2,6 +2,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::line::Paint;
+import package::listed::{NO_SEGMENT, segment_of};
 import package::ribbon::Ribbon;
 import package::sink::{Sink, counters, pool};
 import package::strands::{paint_of, ribbon_of, section, strand_at};
@@ -41,13 +42,13 @@ fn fill(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups
         @if(bounded) { atomicStore(&behind, 0u); }
     }
     workgroupBarrier();
-    let i = thread_index(group, groups, lane);
+    let segment = segment_of(thread_index(group, groups, lane));
     var ribbon: Ribbon;
     var paint: Paint;
-    if i < section.lod.strands * (section.lod.vertices - 1u) {
-        let strand = strand_at(i % section.lod.strands);
-        ribbon = ribbon_of(strand, i / section.lod.strands);
-        paint = paint_of(strand, i / section.lod.strands);
+    if segment != NO_SEGMENT {
+        let strand = strand_at(segment % section.lod.strands);
+        ribbon = ribbon_of(strand, segment / section.lod.strands);
+        paint = paint_of(strand, segment / section.lod.strands);
     }
     var counted: Sink;
     walk(ribbon, paint, &counted);

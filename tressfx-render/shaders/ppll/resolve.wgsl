@@ -11,10 +11,14 @@ import package::fragment::{OPAQUE, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
 import package::node::{Content, NOTHING, Node, PoolUniform, content_of, next_of};
 import package::pixels::{count_hairy, counters, index_of, is_inside, pixel_of, view};
-import package::rest::{SUMS, UNIT};
+import package::rest::UNIT;
 import package::sums::{FULL, optical_depth, transmittance_of};
 import package::tile::tile_of;
 
+@if(bounded)
+import package::rest::{HEAD, WORDS};
+@if(bounded && hair_output)
+import package::rest::KEY;
 @if(hair_output || weighted)
 import package::fragment::nearness_of;
 @if(hair_output)
@@ -31,6 +35,7 @@ import package::sums::{mean_color, weighted};
 import package::weight::{Nearest, weight_of};
 
 @group(0) @binding(1) var<uniform> pool: PoolUniform;
+@if(!bounded)
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<Node>;
 @if(bounded)
@@ -141,7 +146,7 @@ fn blend(nearest: ptr<function, array<Content, ROOM>>, tail: Tail) -> vec4<f32> 
 fn rest_of(index: u32) -> Tail {
     var tail: Tail;
     @if(bounded) {
-        let first = SUMS * index;
+        let first = WORDS * index;
         tail.optical = min(rest[first], FULL);
         tail.weight = min(rest[first + 1u], FULL);
         tail.color = min(vec3(rest[first + 2u], rest[first + 3u], rest[first + 4u]), vec3(FULL));
@@ -197,7 +202,7 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
 @if(hair_output)
 fn nearest_seen(index: u32, head: u32) -> u32 {
     var seen = 0u;
-    @if(bounded) { seen = rest[SUMS * index + 5u]; }
+    @if(bounded) { seen = rest[WORDS * index + KEY]; }
     var next = head;
     while next != NOTHING {
         let node = nodes[next - 1u];
@@ -232,7 +237,8 @@ fn resolve(@builtin(global_invocation_id) thread: vec3<u32>, @builtin(workgroup_
     var head = NOTHING;
     var behind: Tail;
     if inside {
-        head = heads[index];
+        @if(!bounded) { head = heads[index]; }
+        @if(bounded) { head = rest[WORDS * index + HEAD]; }
         behind = rest_of(index);
     }
     let has_hair = head != NOTHING || behind.weight > 0u;

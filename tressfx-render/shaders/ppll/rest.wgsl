@@ -1,16 +1,21 @@
-// What the fragments of a pixel leave that have no node: the sums that a tail is made of.
+// What the fragments of a pixel leave that have no node: the sums that a tail is made of. The head of the list of those that have one is beside
+// them: a kernel can have eight buffers, and no more.
 
 import package::fragment::{Fragment, pack_color, packed_color};
 @if(hair_output)
 import package::fragment::seen_key;
 import package::sums::{optical_depth, weighted};
 
-// Sums of a pixel: of optical depths, of weights, and of red, green and blue, weighted.
+// Words of a pixel: sums of optical depths, of weights, and of red, green and blue, weighted.
 @if(!hair_output)
-const SUMS: u32 = 5u;
-// Behind them, the key of the nearest fragment.
+const WORDS: u32 = 6u;
 @if(hair_output)
-const SUMS: u32 = 6u;
+const WORDS: u32 = 7u;
+// Behind the sums, the number of the first node.
+const HEAD: u32 = 5u;
+// The key of the nearest fragment.
+@if(hair_output)
+const KEY: u32 = 6u;
 // Of colours: there is room for 32 thousand white fragments.
 const UNIT: f32 = 65536.0;
 
@@ -27,10 +32,10 @@ fn add(place: u32, value: u32) {
 // The colour is that of a node, so that a tail has the same sums, whichever way its fragments came to it.
 fn add_to_rest(index: u32, fragment: Fragment, weight: u32) {
     let color = weighted(packed_color(pack_color(fragment)), weight, UNIT);
-    add(SUMS * index, optical_depth(fragment.alpha));
-    add(SUMS * index + 1u, weight);
-    add(SUMS * index + 2u, color.r);
-    add(SUMS * index + 3u, color.g);
-    add(SUMS * index + 4u, color.b);
-    @if(hair_output) { atomicMax(&rest[SUMS * index + 5u], seen_key(fragment.nearness, fragment.alpha)); }
+    add(WORDS * index, optical_depth(fragment.alpha));
+    add(WORDS * index + 1u, weight);
+    add(WORDS * index + 2u, color.r);
+    add(WORDS * index + 3u, color.g);
+    add(WORDS * index + 4u, color.b);
+    @if(hair_output) { atomicMax(&rest[WORDS * index + KEY], seen_key(fragment.nearness, fragment.alpha)); }
 }

@@ -8,11 +8,12 @@ import package::screen::view;
 @if(bounded)
 import package::kept::{is_nearest, kept_key, kept_nearness};
 @if(bounded)
-import package::rest::add_to_rest;
+import package::rest::{HEAD, WORDS, add_to_rest, rest};
 @if(bounded)
 import package::weight::{Nearest, weight_of};
 
 @group(0) @binding(6) var<uniform> pool: PoolUniform;
+@if(!bounded)
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> nodes: array<Node>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
@@ -67,8 +68,8 @@ fn rest_weight(index: u32, fragment: Fragment) -> u32 {
 
 // Puts a node at the head of the list of a pixel.
 fn link(index: u32, node: u32, fragment: Fragment) {
-    let next = atomicExchange(&heads[index], node + 1u);
-    nodes[node] = pack_node(fragment, next);
+    @if(!bounded) { nodes[node] = pack_node(fragment, atomicExchange(&heads[index], node + 1u)); }
+    @if(bounded) { nodes[node] = pack_node(fragment, atomicExchange(&rest[WORDS * index + HEAD], node + 1u)); }
 }
 
 fn take(sink: ptr<function, Sink>, pixel: vec2<u32>, fragment: Fragment) {

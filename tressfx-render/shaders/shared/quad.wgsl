@@ -2,6 +2,7 @@
 
 import package::fragment::Fragment;
 import package::line::{Paint, fragment_at, has_ends_of, is_drawn, line_of, overshoot};
+import package::listed::segment_of;
 import package::ribbon::{Ribbon, scale_of, slant_of};
 import package::screen::view;
 import package::strands::{paint_of, ribbon_of, section, strand_at};
@@ -22,7 +23,7 @@ struct Corner {
 
 // Six vertices a segment, two triangles.
 fn corner_of(vertex: u32) -> Corner {
-    let segment = vertex / 6u;
+    let segment = segment_of(vertex / 6u);
     let strand = strand_at(segment % section.lod.strands);
     let ribbon = ribbon_of(strand, segment / section.lod.strands);
     let line = line_of(ribbon);

@@ -2,6 +2,7 @@
 // the triangles that they were made for: so the segment finds its own pixels. What becomes of a fragment is up to the
 // technique: it brings a module `sink` with a struct `Sink` and a function `take(sink, pixel, fragment)`.
 
+import package::listed::{NO_SEGMENT, segment_of};
 import package::line::{Line, Paint, Span, fragment_at, has_ends_of, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::{Ribbon, slant_of};
 import package::screen::view;
@@ -58,9 +59,10 @@ fn visit(ribbon: Ribbon, line: Line, paint: Paint, span: Span, has_ends: bool, s
     }
 }
 
-// Visits those of a segment of the section, if there are so many.
-fn walk_segment(segment: u32, sink: ptr<function, Sink>) {
-    if segment < section.lod.strands * (section.lod.vertices - 1u) {
+// Visits those of the segment of a thread, if it has one.
+fn walk_segment(thread: u32, sink: ptr<function, Sink>) {
+    let segment = segment_of(thread);
+    if segment != NO_SEGMENT {
         let strand = strand_at(segment % section.lod.strands);
         let vertex = segment / section.lod.strands;
         walk(ribbon_of(strand, vertex), paint_of(strand, vertex), sink);

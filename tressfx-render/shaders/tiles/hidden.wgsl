@@ -1,6 +1,7 @@
 // What hair hides in a tile, as the next frame is told.
 
-import package::tiles::{NOTHING_HIDDEN, SLICES, TileInfo, distance_of, is_cut, nearness_at, slice_distance, tiles};
+import package::screen::{distance_of, nearness_at};
+import package::tiles::{NOTHING_HIDDEN, SLICES, TileInfo, is_cut, slice_distance, tiles};
 import package::unit::{Unit, begin, last_end, references_before};
 
 // A quarter hides what is behind a slice before which the tile has so many more references than were needed to close it, as a share of these: while hair moves, and while it

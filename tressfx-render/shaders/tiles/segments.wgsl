@@ -2,8 +2,7 @@
 
 import package::line::Paint;
 import package::ribbon::{End, Ribbon, clip, margin_of, off_screen, project, scale_of, width_scale};
-import package::screen::view;
-import package::tiles::distance_of;
+import package::screen::{distance_of, view};
 
 struct Vertex {
     // Its pixel and nearness; where it is not beyond the near plane, or far outside of the picture, its point in the space of the eye.
@@ -52,9 +51,6 @@ fn unpack_vertex(packed: vec4<u32>) -> Vertex {
 fn leads_on(vertex: u32) -> bool {
     return (vertices[vertex].w & LEADS_ON) != 0u;
 }
-
-// Coordinates in pixels up to which a vertex has its pixel: a ribbon between two such need not be cut to the screen.
-const LARGEST_PIXEL: f32 = 32768.0;
 
 // A vertex before the eye again.
 fn end_of(vertex: Vertex) -> End {

@@ -20,12 +20,12 @@ import package::line::{Line, fragment_of_axis, fragment_on, has_ends_of, is_draw
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
 import package::ribbon::{Ribbon, slant_of};
-import package::screen::{scene_nearness, view};
+import package::screen::{distance_of, scene_nearness, view};
 import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
 import package::tiles::{
     CLASSES, FIRST_QUARTER, IS_NEAREST, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, distance_of, groups_of_a_tile, is_cut, is_restless, tile_columns, tile_count, tiles,
+    WaitingTiles, begin_of, groups_of_a_tile, is_cut, is_restless, tile_columns, tile_count, tiles,
 };
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 

@@ -3,12 +3,13 @@
 // left out. Also the nearest vertex of each tile. One thread a vertex; a group has a piece of each of several strands.
 
 import package::joint::{ROUND, tilt_of};
-import package::ribbon::{End, is_sound, on_screen, scale_of};
+import package::points::{ANYWHERE, NOWHERE, SOMEWHERE, point_of, reach_between};
+import package::ribbon::is_sound;
 import package::screen::view;
-import package::segments::{LARGEST_PIXEL, Vertex, pack_rest};
+import package::segments::{Vertex, pack_rest};
 import package::strands::{Strand, bend_at, colors, end_at, is_sound_at, neighbours_of, section, strand_at, tilt_between, vertex_of};
 import package::tile::TILE;
-import package::tiles::{DISTANCE_MARGIN, SharedTileInfo, ViewState, nearness_at, tile_columns, tiles};
+import package::tiles::{SharedTileInfo, ViewState, tile_columns, tiles};
 
 @group(0) @binding(6) var<storage, read_write> vertices: array<vec4<u32>>;
 @group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;
@@ -24,10 +25,6 @@ const MOST_STRANDS: u32 = LANES / 2u;
 // that is found is all in the first slice; where a strand lies alone before the others, it takes the thin slices from them.
 const SAMPLES: u32 = 8192u;
 const MOST_BETWEEN: u32 = 8u;
-// A point that nothing is drawn from.
-const NOWHERE: vec4<f32> = vec4(3e38, 3e38, 3e38, 0.0);
-// Whether a segment is hidden is not looked for in more tiles than this.
-const MOST_TILES: i32 = 16;
 
 // The points of the group: a vertex of each strand, then the next ones.
 var<workgroup> points: array<vec4<f32>, LANES>;
@@ -52,19 +49,6 @@ fn pieces() -> Pieces {
     let count = (segments + MOST_SEGMENTS - 1u) / MOST_SEGMENTS;
     let own = (segments + count - 1u) / count;
     return Pieces(count, own, LANES / (own + 1u));
-}
-
-// Pixel, nearness and radius / w of a vertex; where it is not beyond the near plane, or far outside of the picture, its point in the space of
-// the eye and its radius below 0.
-fn point_of(end: End) -> vec4<f32> {
-    let distance = -end.point.z;
-    let nearness = nearness_at(max(distance, view.lens.near));
-    let scale = scale_of(view.lens, vec2(nearness)).x;
-    let pixel = on_screen(view.lens, end.point.xy, scale);
-    if distance <= view.lens.near || any(abs(pixel) >= vec2(LARGEST_PIXEL)) {
-        return vec4(end.point, -max(end.radius, 1e-30));
-    }
-    return vec4(pixel, nearness, end.radius * scale);
 }
 
 fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
@@ -111,13 +95,6 @@ fn note_nearest(point: vec4<f32>) {
     }
 }
 
-// Pixels beside the line between two points within which a segment may leave fragments, its ends and turns included.
-fn margin_between(a: vec4<f32>, b: vec4<f32>) -> f32 {
-    let from_center = max(abs(a.xy - view.lens.center), abs(b.xy - view.lens.center));
-    let focal = abs(view.lens.focal.x) + abs(view.lens.focal.y) + abs(view.lens.skew) + from_center.x + from_center.y;
-    return 1.5 * (max(a.w, b.w) * focal + 1.0) + 1.0;
-}
-
 // Whether the opaque scene shows something at a nearness in any of these tiles. Four are looked at together, along the longer side: a lane
 // that looks at one after the other waits for each.
 fn is_before_scene(nearest: f32, low: vec2<i32>, high: vec2<i32>) -> bool {
@@ -143,22 +120,11 @@ fn is_before_scene(nearest: f32, low: vec2<i32>, high: vec2<i32>) -> bool {
 
 // Whether a segment may be seen.
 fn may_be_seen(a: vec4<f32>, b: vec4<f32>) -> bool {
-    if !is_sound(a.xyz) || !is_sound(b.xyz) {
-        return false;
+    let reach = reach_between(a, b);
+    if reach.place != SOMEWHERE {
+        return reach.place == ANYWHERE;
     }
-    let margin = margin_between(a, b);
-    if min(a.w, b.w) < 0.0 || any(max(abs(a.xy), abs(b.xy)) + margin >= vec2(LARGEST_PIXEL)) {
-        return true;
-    }
-    let low = vec2<i32>(floor(max(min(a.xy, b.xy) - margin, vec2(0.0)))) / i32(TILE);
-    let high = vec2<i32>(floor(min(max(a.xy, b.xy) + margin, vec2<f32>(view.size) - 1.0))) / i32(TILE);
-    if any(max(a.xy, b.xy) + margin < vec2(0.0)) || any(low > high) {
-        return false;
-    }
-    if (high.x - low.x + 1) * (high.y - low.y + 1) > MOST_TILES {
-        return true;
-    }
-    return is_before_scene(max(a.z, b.z) * (1.0 + DISTANCE_MARGIN), low, high);
+    return is_before_scene(reach.nearest, reach.low, reach.high);
 }
 
 // The vertices of segments that may be seen, a bit each.

@@ -1,7 +1,7 @@
 // Tiles of the screen, and slices of depth through them: what the kernels of this technique share.
 
 import package::counters::Counters;
-import package::screen::view;
+import package::screen::{distance_of, view};
 import package::tile::TILE;
 
 // Slices of depth; each holds references to the segments that touch it.
@@ -60,9 +60,6 @@ struct TilesUniform {
 }
 
 @group(0) @binding(12) var<uniform> tiles: TilesUniform;
-
-// Share of a distance by which a ribbon is taken nearer than it is: more than rounding can move a fragment.
-const DISTANCE_MARGIN: f32 = 4e-6;
 
 // Groups in a row of the grid that blends tiles.
 const ROW: u32 = 32768u;
@@ -165,20 +162,6 @@ fn tile_columns() -> u32 {
 
 fn tile_count() -> u32 {
     return tile_columns() * ((view.size.y + TILE - 1u) / TILE);
-}
-
-fn distance_of(nearness: f32) -> f32 {
-    if view.lens.is_perspective == 1u {
-        return 1.0 / nearness;
-    }
-    return (1.0 - nearness) / view.lens.nearness_slope;
-}
-
-fn nearness_at(distance: f32) -> f32 {
-    if view.lens.is_perspective == 1u {
-        return 1.0 / distance;
-    }
-    return 1.0 - view.lens.nearness_slope * distance;
 }
 
 // Where the slices of a tile begin: `nearness` is that of its nearest vertex, or 0 where there is none.

@@ -3,7 +3,8 @@
 import package::constants::LANES;
 import package::cuts::{forget_cuts, next_cut, note_cut};
 import package::fragment::depth_key;
-import package::tiles::{SLICES, nearness_at, slice_distance};
+import package::screen::nearness_at;
+import package::tiles::{SLICES, slice_distance};
 
 // How many fragments a group has room for.
 const ENTRIES_OF_A_LANE: u32 = 3u;

@@ -16,9 +16,9 @@ use crate::region::Region;
 use crate::resolved::{pixels, storage};
 use crate::segments::Segments;
 
-/// Bytes of the sums of a pixel, and of the key of a depth where depth is written: see `rest.wgsl`.
+/// Bytes of the sums and of the head of a pixel, and of the key of a depth where depth is written: see `rest.wgsl`.
 fn rest_bytes(output: Output) -> u64 {
-    if output.hair { 24 } else { 20 }
+    if output.hair { 28 } else { 24 }
 }
 
 /// What such lists have beside a pool. Kernels are compiled when they are first needed, and kept; memory is freed when it is no
@@ -46,7 +46,7 @@ struct Kernels {
 struct Memory {
     /// `u32` each: the keys of the nearest fragments of a pixel.
     keys: BufferId,
-    /// Five `u32` a pixel, or six.
+    /// Six `u32` a pixel, or seven.
     rest: BufferId,
     /// Bytes of both.
     sizes: [u64; 2],
@@ -98,6 +98,15 @@ impl Bounded {
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
         Ok(Prepared { kernels, memory: Memory::new(backend, size, desc.asked(), output)? })
+    }
+
+    /// Makes what it takes to walk lists of segments, once they are walked and there are kernels.
+    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend, are_walked: bool) -> Result<()> {
+        if let Some(kernels) = self.kernels.as_mut().filter(|_| are_walked) {
+            kernels.nearest.prepare_lists(backend)?;
+            kernels.fill.prepare_lists(backend)?;
+        }
+        Ok(())
     }
 
     /// Bounds lists with what was prepared.

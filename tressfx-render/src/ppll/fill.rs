@@ -10,12 +10,12 @@ use crate::segments::{Segments, Shaders};
 
 const SHADERS: Shaders = Shaders {
     compute: ("hair.render.fill", ("fill", include_str!("../../shaders/ppll/fill.wgsl"))),
-    raster: ("hair.render.fill_raster", ("fill_raster", include_str!("../../shaders/ppll/fill_raster.wgsl"))),
+    raster: Some(("hair.render.fill_raster", ("fill_raster", include_str!("../../shaders/ppll/fill_raster.wgsl")))),
     library: LIBRARY,
 };
 
 /// The pass; where lists are bounded, only the nearest fragments of a pixel have nodes.
 pub(crate) fn pass(backend: &mut dyn Backend, desc: &PpllDesc, is_bounded: bool, output: Output) -> Result<Segments> {
     let specialization = at_places(output.specialization().feature("bounded", is_bounded), desc.places, 1);
-    Segments::new(backend, desc.fill, &SHADERS, &specialization, output.color)
+    Segments::new(backend, desc.fill, SHADERS, &specialization, output.color)
 }

@@ -152,11 +152,10 @@ impl NodePool {
         list.upload(self.uniform, 0, &[uniform]);
     }
 
-    /// What the shaders that fill it bind of it.
-    pub(crate) fn bindings(&self, view: &BoundView) -> [(&'static str, Binding); 4] {
+    /// What the shaders that fill it bind of it, beside the heads.
+    pub(crate) fn bindings(&self, view: &BoundView) -> [(&'static str, Binding); 3] {
         [
             ("pool", self.uniform.into()),
-            ("heads", self.heads.into()),
             ("nodes", self.nodes.into()),
             ("counters", self.counters.of(view.index).into()),
         ]

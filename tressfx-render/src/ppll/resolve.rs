@@ -89,14 +89,14 @@ impl Resolve {
             let own = [
                 ("view", view.uniform),
                 ("pool", pool.uniform.into()),
-                ("heads", pool.heads.into()),
                 ("nodes", pool.nodes.into()),
                 ("counters", pool.counters.of(view.index).into()),
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
                 ("tile_vertices", resolved.draw.into()),
             ];
-            kernel.bind(&own.into_iter().chain(rest).collect::<Vec<_>>())
+            let lists = rest.unwrap_or(("heads", pool.heads.into()));
+            kernel.bind(&[&own[..], &[lists]].concat())
         })?;
         list.compute(kernel, &bindings, view.region.grid());
         Ok(())

@@ -13,7 +13,7 @@ use crate::output::walk;
 use crate::shaders::{GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 
-const LIBRARY: &[Module] = &with_shared::<4, 20>([
+const LIBRARY: &[Module] = &with_shared::<4, 22>([
     ("frames", include_str!("../../shaders/shadow/frames.wgsl")),
     ("grids", include_str!("../../shaders/shadow/grids.wgsl")),
     ("hair_shadow", include_str!("../../shaders/shadow/hair_shadow.wgsl")),

@@ -6,7 +6,7 @@ use tressfx_core::shader::Module;
 use crate::segments::Shaders;
 use crate::shaders::with_shared;
 
-const LIBRARY: &[Module] = &with_shared::<2, 18>([
+const LIBRARY: &[Module] = &with_shared::<2, 20>([
     ("layers", include_str!("../../shaders/shortcut/layers.wgsl")),
     ("sink", include_str!("../../shaders/shortcut/depths_sink.wgsl")),
 ]);
@@ -16,9 +16,9 @@ pub(crate) const SHADERS: Shaders = Shaders {
         "hair.render.shortcut_depths",
         ("shortcut_depths", include_str!("../../shaders/shortcut/shortcut_depths.wgsl")),
     ),
-    raster: (
+    raster: Some((
         "hair.render.shortcut_depths_raster",
         ("shortcut_depths_raster", include_str!("../../shaders/shortcut/shortcut_depths_raster.wgsl")),
-    ),
+    )),
     library: LIBRARY,
 };

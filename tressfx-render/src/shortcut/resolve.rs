@@ -13,7 +13,7 @@ use crate::shaders::{PIXELS, compute, with_shared};
 use crate::views::BoundView;
 
 const LIBRARY: &[Module] =
-    &with_shared::<2, 18>([PIXELS, ("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
+    &with_shared::<2, 20>([PIXELS, ("layers", include_str!("../../shaders/shortcut/layers.wgsl"))]);
 
 #[derive(Debug)]
 pub(crate) struct Resolve {

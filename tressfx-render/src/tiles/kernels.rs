@@ -1,15 +1,17 @@
 //! The kernels of tiles: `hair.render.tile_depth`, `tile_points`, `tile_bin`, `tile_alloc`, `tile_blend` and `tile_reopen`.
 
+use std::hash::Hash;
+
 use tressfx_core::backend::Backend;
 use tressfx_core::error::{Error, Label, Result};
 use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, Groups, PassList};
-use tressfx_core::shader::{Binding, Kernel, Module, Specialization};
+use tressfx_core::shader::{Module, Specialization};
 
 use super::TilesDesc;
 use super::layout::points_grid;
 use super::memory::Memory;
-use crate::bound::Bound;
+use crate::bound::Pass;
 use crate::output::Output;
 use crate::places::at_places;
 use crate::resolved::tile_count;
@@ -17,7 +19,7 @@ use crate::shaders::{FRONT, GROUP, compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
-const LIBRARY: &[Module] = &with_shared::<12, 28>([
+const LIBRARY: &[Module] = &with_shared::<12, 30>([
     ("blocks", include_str!("../../shaders/tiles/blocks.wgsl")),
     ("cuts", include_str!("../../shaders/tiles/cuts.wgsl")),
     ("entries", include_str!("../../shaders/tiles/entries.wgsl")),
@@ -84,61 +86,32 @@ fn lanes_of_a_pixel(places: u32) -> u32 {
 /// Lanes that share a tile: a row of pixels each in `tile_depth`, a part of the slices in `tile_alloc`.
 const LANES_OF_A_TILE: u32 = 8;
 
-/// A kernel and its bindings by view, and by what else it may differ in.
-#[derive(Debug)]
-struct Pass<K> {
-    kernel: Kernel,
-    bound: Bound<(usize, K)>,
-}
-
-impl<K: Eq + std::hash::Hash> Pass<K> {
-    fn new(backend: &mut dyn Backend, label: Label, root: Module) -> Result<Self> {
-        Self::specialized(backend, label, root, &Specialization::new())
-    }
-
-    fn specialized(
-        backend: &mut dyn Backend,
-        label: Label,
-        root: Module,
-        specialization: &Specialization,
-    ) -> Result<Self> {
-        let kernel = compute(backend, label, root, LIBRARY, specialization)?;
-        Ok(Self { kernel, bound: Bound::new() })
-    }
-
-    /// Runs so many groups.
-    fn record(
-        &mut self,
-        list: &mut PassList,
-        key: (usize, K),
-        groups: Groups,
-        resources: &[(&str, Binding)],
-    ) -> Result<()> {
-        let bindings = self.bound.get(key, || self.kernel.bind(resources))?;
-        match groups {
-            Groups::Grid(grid) => list.compute(&self.kernel, &bindings, grid),
-            Groups::Indirect { buffer, offset } => list.compute_indirect(&self.kernel, &bindings, buffer, offset),
-        }
-        Ok(())
-    }
+/// A kernel of tiles, by view and by what else its bindings may differ in.
+fn pass<K: Eq + Hash>(
+    backend: &mut dyn Backend,
+    label: Label,
+    root: Module,
+    specialization: &Specialization,
+) -> Result<Pass<(usize, K)>> {
+    compute(backend, label, root, LIBRARY, specialization).map(Pass::new)
 }
 
 /// The kernels in the order in which they run; `bin` runs before and behind `alloc`, and behind `reopen` they run again.
 #[derive(Debug)]
 pub(crate) struct Kernels {
     /// By the scene.
-    depth: Pass<TextureId>,
+    depth: Pass<(usize, TextureId)>,
     /// By section.
-    points: Pass<BufferId>,
+    points: Pass<(usize, BufferId)>,
     /// By the round that it stores, or none.
-    bin: Pass<Option<u32>>,
-    alloc: Pass<()>,
+    bin: Pass<(usize, Option<u32>)>,
+    alloc: Pass<(usize, ())>,
     /// By the scene and the round: those with fewer lanes first.
-    blend: Vec<Pass<(TextureId, u32)>>,
+    blend: Vec<Pass<(usize, (TextureId, u32))>>,
     /// Lanes of a group of each of them, and which of them runs.
     lanes: Vec<u32>,
     chosen: usize,
-    reopen: Pass<()>,
+    reopen: Pass<(usize, ())>,
 }
 
 /// The groups of `tile_bin` where there are at most so many vertices.
@@ -163,20 +136,21 @@ impl Kernels {
         let alloc = ("tile_alloc", include_str!("../../shaders/tiles/tile_alloc.wgsl"));
         let blend = ("tile_blend", include_str!("../../shaders/tiles/tile_blend.wgsl"));
         let reopen = ("tile_reopen", include_str!("../../shaders/tiles/tile_reopen.wgsl"));
+        let plain = Specialization::new();
         let lanes = lanes(desc, is_cpu)?;
         let blend = lanes.iter().map(|&lanes| {
-            Pass::specialized(backend, "hair.render.tile_blend", blend, &blended.clone().constant("LANES", lanes))
+            pass(backend, "hair.render.tile_blend", blend, &blended.clone().constant("LANES", lanes))
         });
         let blend = blend.collect::<Result<_>>()?;
         Ok(Self {
             blend,
             chosen: lanes.len() / 2,
             lanes,
-            points: Pass::specialized(backend, "hair.render.tile_points", points, &output.walk())?,
-            depth: Pass::new(backend, "hair.render.tile_depth", depth)?,
-            bin: Pass::new(backend, "hair.render.tile_bin", bin)?,
-            alloc: Pass::new(backend, "hair.render.tile_alloc", alloc)?,
-            reopen: Pass::new(backend, "hair.render.tile_reopen", reopen)?,
+            points: pass(backend, "hair.render.tile_points", points, &output.walk())?,
+            depth: pass(backend, "hair.render.tile_depth", depth, &plain)?,
+            bin: pass(backend, "hair.render.tile_bin", bin, &plain)?,
+            alloc: pass(backend, "hair.render.tile_alloc", alloc, &plain)?,
+            reopen: pass(backend, "hair.render.tile_reopen", reopen, &plain)?,
         })
     }
 
@@ -186,21 +160,21 @@ impl Kernels {
     }
 
     pub(crate) fn begin_frame(&mut self) {
-        self.points.bound.begin_frame();
-        self.depth.bound.begin_frame();
-        self.bin.bound.begin_frame();
-        self.alloc.bound.begin_frame();
-        self.blend.iter_mut().for_each(|blend| blend.bound.begin_frame());
-        self.reopen.bound.begin_frame();
+        self.points.begin_frame();
+        self.depth.begin_frame();
+        self.bin.begin_frame();
+        self.alloc.begin_frame();
+        self.blend.iter_mut().for_each(|blend| blend.begin_frame());
+        self.reopen.begin_frame();
     }
 
     pub(crate) fn forget_bindings(&mut self) {
-        self.points.bound.clear();
-        self.depth.bound.clear();
-        self.bin.bound.clear();
-        self.alloc.bound.clear();
-        self.blend.iter_mut().for_each(|blend| blend.bound.clear());
-        self.reopen.bound.clear();
+        self.points.forget_bindings();
+        self.depth.forget_bindings();
+        self.bin.forget_bindings();
+        self.alloc.forget_bindings();
+        self.blend.iter_mut().for_each(|blend| blend.forget_bindings());
+        self.reopen.forget_bindings();
     }
 
     #[cfg(test)]

@@ -149,7 +149,7 @@ fn padded(Grid([x, y, z]): Grid) -> [u32; 4] {
 }
 
 /// The distances from the plane of the eye between which the sections are expected; the second is larger.
-fn distances(view: &View, draws: &[SectionDraw]) -> [f32; 2] {
+pub(crate) fn distances(view: &View, draws: &[SectionDraw]) -> [f32; 2] {
     let lens = view.lens();
     let of = |draw: &SectionDraw| {
         let (center, radius) = draw.sphere();

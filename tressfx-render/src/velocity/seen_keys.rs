@@ -9,7 +9,7 @@ use crate::segments::walking;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
-    &with_shared::<1, 17>([("sink", include_str!("../../shaders/velocity/seen_keys_sink.wgsl"))]);
+    &with_shared::<1, 19>([("sink", include_str!("../../shaders/velocity/seen_keys_sink.wgsl"))]);
 
 pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_keys", include_str!("../../shaders/velocity/seen_keys.wgsl"));

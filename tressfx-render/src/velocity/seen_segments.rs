@@ -10,7 +10,7 @@ use crate::segments::walking;
 use crate::shaders::{compute, with_shared};
 
 const LIBRARY: &[Module] =
-    &with_shared::<2, 18>([MOTION, ("sink", include_str!("../../shaders/velocity/seen_segments_sink.wgsl"))]);
+    &with_shared::<2, 20>([MOTION, ("sink", include_str!("../../shaders/velocity/seen_segments_sink.wgsl"))]);
 
 pub(super) fn kernel(backend: &mut dyn Backend, copies: bool) -> Result<Kernel> {
     let root = ("seen_segments", include_str!("../../shaders/velocity/seen_segments.wgsl"));

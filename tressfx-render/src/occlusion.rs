@@ -1,0 +1,192 @@
+//! What hair hides of itself, for techniques that walk over segments: where hair is dense, most fragments lie behind others that let nothing through.
+//!
+//! From the mass of hair in each tile it is guessed between which depths its pixels become opaque. The segments before the guess are walked once to sum
+//! optical depths, so that it is known in each pixel from where on it is opaque. Segments behind that, in all tiles that they may touch, are on no list,
+//! and the walks of the technique take what is opaque for the scene. No frame depends on the one before.
+
+mod kernels;
+mod memory;
+
+use tressfx_core::backend::Backend;
+use tressfx_core::error::Result;
+use tressfx_core::gpu_struct;
+use tressfx_core::id::TextureId;
+use tressfx_core::pass::PassList;
+use tressfx_core::shader::Binding;
+use tressfx_core::view::View;
+
+use crate::output::Output;
+use crate::predict;
+use crate::renderer::Targets;
+use crate::resolved::TILE;
+use crate::strands::SectionDraw;
+use crate::tiles::distances;
+use crate::views::BoundView;
+use kernels::Kernels;
+use memory::{Memory, Room};
+
+pub(crate) use memory::Listed;
+
+gpu_struct! {
+    /// What the kernels know of the hair.
+    pub(crate) struct OcclusionUniform {
+        /// Distance at which hair is expected to begin.
+        pub nearest: f32,
+        /// How much farther it is expected to end.
+        pub depth: f32,
+        /// Bits of optical depth at which nothing more is seen.
+        pub closing: f32,
+        /// Of so many strands the mass of one is taken.
+        pub stride: u32,
+    }
+}
+
+/// Transmittance of a pixel below which nothing more is seen, as a power of a half.
+const CLOSING: f32 = 10.0;
+
+/// Of so many strands the mass of one is taken.
+const STRIDE: u32 = 8;
+
+/// Fragments a pixel, predicted over the tiles that hair may touch, from which on hair is dense.
+const DENSE: f64 = 40.0;
+
+/// Fragments of a pixel that are left of dense hair, in the mean of these tiles.
+const LEFT: f64 = 24.0;
+
+/// Frames after which it is predicted again how dense hair is.
+const FRAMES: u64 = 16;
+
+/// Whether hair is so dense that most of it is hidden by other hair.
+fn is_dense(view: &View, draws: &[SectionDraw]) -> bool {
+    predict::fragments(view, draws) > DENSE * pixels(view, draws)
+}
+
+/// Pixels of the tiles that hair may touch.
+fn pixels(view: &View, draws: &[SectionDraw]) -> f64 {
+    (u64::from(TILE * TILE) * predict::tiles(view, draws)) as f64
+}
+
+/// What finds hidden hair.
+#[derive(Debug)]
+pub(crate) struct Occlusion {
+    /// Whether it always or never does; by how dense hair is otherwise.
+    wanted: Option<bool>,
+    size: [u32; 2],
+    output: Output,
+    kernels: Option<Kernels>,
+    memory: Option<Memory>,
+    /// Whether hair was predicted to be dense.
+    is_dense: bool,
+    frame: u64,
+    /// What the lists of the newest frame's sections take.
+    room: Room,
+}
+
+impl Occlusion {
+    pub(crate) fn new(wanted: Option<bool>, size: [u32; 2], output: Output) -> Self {
+        let (kernels, memory) = (None, None);
+        Self { wanted, size, output, kernels, memory, is_dense: false, frame: 0, room: Room::default() }
+    }
+
+    /// Whether the next frame looks for hidden hair, if there is room for its lists.
+    pub(crate) fn is_wanted(&self) -> bool {
+        self.wanted.unwrap_or(self.is_dense)
+    }
+
+    /// Whether there is all that takes.
+    pub(crate) fn is_ready(&self) -> bool {
+        self.kernels.is_some() && self.memory.as_ref().is_some_and(|memory| memory.room.holds(self.room))
+    }
+
+    /// Predicts how dense hair is in a view that comes next, and how many fragments are left of so many.
+    pub(crate) fn predict(&mut self, backend: &dyn Backend, view: &View, draws: &[SectionDraw], fragments: f64) -> f64 {
+        self.room = self.room.and(Room::of(backend.caps().binding_alignment, draws));
+        self.is_dense = is_dense(view, draws);
+        if self.is_wanted() { fragments.min(LEFT * pixels(view, draws)) } else { fragments }
+    }
+
+    /// Makes what it takes to look for hidden hair, where that is wanted. Returns whether anything is new.
+    pub(crate) fn prepare(&mut self, backend: &mut dyn Backend) -> Result<bool> {
+        if !self.is_wanted() || self.is_ready() || memory::check(backend, self.size, self.room).is_err() {
+            return Ok(false);
+        }
+        if self.kernels.is_none() {
+            self.kernels = Some(Kernels::new(backend, self.output)?);
+        }
+        let memory = Memory::new(backend, self.size, self.output.views, self.room)?;
+        if let Some(old) = self.memory.replace(memory) {
+            old.destroy(backend);
+        }
+        self.forget_bindings();
+        Ok(true)
+    }
+
+    /// Gives back the memory.
+    pub(crate) fn release(&mut self, backend: &mut dyn Backend) {
+        if let Some(memory) = self.memory.take() {
+            memory.destroy(backend);
+        }
+        self.forget_bindings();
+    }
+
+    /// Views have another size from now on.
+    pub(crate) fn resize(&mut self, backend: &mut dyn Backend, size: [u32; 2]) {
+        self.release(backend);
+        self.size = size;
+    }
+
+    fn forget_bindings(&mut self) {
+        self.kernels.iter_mut().for_each(Kernels::forget_bindings);
+    }
+
+    /// Bytes of its memory.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.memory.as_ref().map_or(0, Memory::bytes)
+    }
+
+    pub(crate) fn begin_frame(&mut self) {
+        self.frame += 1;
+        self.kernels.iter_mut().for_each(Kernels::begin_frame);
+    }
+
+    /// Writes the passes of a view; none where hidden hair is not looked for.
+    pub(crate) fn passes(
+        &mut self,
+        list: &mut PassList,
+        view: &BoundView,
+        draws: &[SectionDraw],
+        targets: &Targets,
+    ) -> Result<Option<Occluded>> {
+        if self.frame % FRAMES == 1 && view.index == 0 {
+            self.is_dense = is_dense(view.view, draws);
+        }
+        let is_wanted = self.is_wanted();
+        let (Some(kernels), Some(memory)) = (&mut self.kernels, &self.memory) else { return Ok(None) };
+        self.room = memory.room_of(draws);
+        if !is_wanted || !memory.room.holds(self.room) {
+            return Ok(None);
+        }
+        let [nearest, farthest] = distances(view.view, draws);
+        let depth = farthest - nearest;
+        memory.begin(list, view, OcclusionUniform { nearest, depth, closing: CLOSING, stride: STRIDE });
+        let lists = memory.lists(draws);
+        kernels.find(list, view, draws, targets.depth, memory, &lists)?;
+        Ok(Some(Occluded { depth: memory.depth, lists }))
+    }
+}
+
+/// What the walks of a technique take in place of the scene and of all segments.
+#[derive(Debug)]
+pub(crate) struct Occluded {
+    /// The nearness of what is seen farthest in each pixel of the view.
+    pub(crate) depth: TextureId,
+    /// The segments of each section that may be seen.
+    pub(crate) lists: Vec<Listed>,
+}
+
+impl Listed {
+    /// What a walk binds.
+    pub(crate) fn binding(&self) -> (&'static str, Binding) {
+        ("listed", self.segments)
+    }
+}
