@@ -50,8 +50,9 @@ fn every_kernel_has_one_word_for_its_file_its_functions_and_its_label() {
             let label = format!("\"hair.{group}.{name}\"");
             assert!(rust.iter().any(|(_, text)| text.contains(&label)), "{label} is nowhere in {package}");
             // What places and finds, and computes no picture, is held by a test of what it leaves in its buffers.
-            if name.starts_with("tile_") {
-                let test = root().join("tests/tests/render_tiles.rs");
+            let direct = [("tile_", "render_tiles.rs"), ("occlusion_", "render_occlusion.rs")];
+            if let Some((_, test)) = direct.iter().find(|(prefix, _)| name.starts_with(prefix)) {
+                let test = root().join("tests/tests").join(test);
                 let text = fs::read_to_string(&test).unwrap_or_default();
                 assert!(text.contains(&label), "{}: no direct test of {label}", test.display());
                 continue;

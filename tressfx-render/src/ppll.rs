@@ -78,7 +78,7 @@ pub struct PpllDesc {
     /// cover all of them alike.
     pub places: u32,
     /// Whether hair is left out that is behind hair which lets less than a thousandth through: it takes neither memory nor part in the colour
-    /// of a tail. None: where hair is predicted to be dense.
+    /// of a tail. None: where hair is predicted to be dense. Not with several places in a pixel: what covers one of them hides nothing in the others.
     pub skips_hidden: Option<bool>,
 }
 
@@ -140,6 +140,11 @@ impl PpllDesc {
         self.cap.unwrap_or(self.k).min(self.k)
     }
 
+    /// Whether hidden hair is always or never looked for.
+    fn looks_for_hidden(&self) -> Option<bool> {
+        if self.places > 1 { Some(false) } else { self.skips_hidden }
+    }
+
     fn variant(&self, bounded: bool, output: Output) -> Variant {
         Variant { k: self.k, tail: self.tail, places: self.places, bounded, output }
     }
@@ -192,6 +197,9 @@ impl Ppll {
         let output = output.into();
         check_k(LABEL, desc.k, &K_RANGE)?;
         check_places(LABEL, desc.places)?;
+        if desc.places > 1 && desc.skips_hidden == Some(true) {
+            return Err(Error::rule(LABEL, "hidden hair is not known where a pixel has several places".to_owned()));
+        }
         check(backend, size, output)?;
         let mut made = Self {
             desc: *desc,
@@ -202,7 +210,7 @@ impl Ppll {
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
             bounded: Bounded::default(),
-            occlusion: Occlusion::new(desc.skips_hidden, size, output),
+            occlusion: Occlusion::new(backend, desc.looks_for_hidden(), size, output),
             kept: 0,
             unproven: None,
             views: 1,
@@ -365,9 +373,10 @@ impl TechniqueInstance for Ppll {
     }
 
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
-        let fragments = self.occlusion.predict(backend, view, draws, predict::fragments(view, draws));
-        self.prepare_occlusion(backend)?;
-        self.reserve(backend, fragments as u64)
+        let fragments = predict::fragments(view, draws);
+        self.occlusion.expect(backend, view, draws, fragments);
+        self.reserve(backend, fragments as u64)?;
+        self.prepare_occlusion(backend)
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {

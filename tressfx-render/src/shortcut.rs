@@ -124,7 +124,7 @@ impl ShortCut {
             depths: Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?,
             colors: Segments::new(backend, desc.fill, colors::SHADERS, &desc.specialization(output), output.color)?,
             resolve: resolve::Resolve::new(backend, desc, output)?,
-            occlusion: Occlusion::new(Some(desc.skips_hidden), size, output),
+            occlusion: Occlusion::new(backend, Some(desc.skips_hidden), size, output),
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
         })
@@ -163,7 +163,7 @@ impl TechniqueInstance for ShortCut {
 
     /// There is no pool.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
-        self.occlusion.predict(backend, view, draws, predict::fragments(view, draws));
+        self.occlusion.expect(backend, view, draws, predict::fragments(view, draws));
         self.prepare_occlusion(backend)
     }
 

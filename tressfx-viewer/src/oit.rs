@@ -30,6 +30,9 @@ pub(crate) struct Oit {
     /// and takes longer; 1 by default
     #[arg(long, value_name = "N")]
     places: Option<u32>,
+    /// Whether hair is left out that other hair hides: less than a thousandth is seen of it. Without it, where hair is dense, with `--oit shortcut` nowhere
+    #[arg(long, value_name = "BOOL")]
+    skip_hidden: Option<bool>,
     /// What turns segments of strands into fragments; the picture is the same
     #[arg(long, value_enum, default_value_t = FillName::Compute)]
     fill: FillName,
@@ -121,7 +124,8 @@ impl Oit {
             OitName::Shortcut => {
                 let desc = ShortCutDesc::default();
                 let k = self.k(desc.k, &ShortCutDesc::K_RANGE)?;
-                Ok(desc.k(k).ordered(self.oit_ordered).fill(self.fill.fill()).into())
+                let skips_hidden = self.skip_hidden.unwrap_or(desc.skips_hidden);
+                Ok(desc.k(k).ordered(self.oit_ordered).fill(self.fill.fill()).skips_hidden(skips_hidden).into())
             }
             OitName::Tiles if self.oit_k.is_some() => bail!("--oit-k belongs to --oit ppll and --oit shortcut"),
             OitName::Tiles => Ok(self.tiles()?.into()),
@@ -136,11 +140,11 @@ impl Oit {
         let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
         let desc = PpllDesc::default().tail(tail).cap(self.oit_cap).fill(self.fill.fill());
         let bytes = self.oit_bytes.unwrap_or(desc.max_node_bytes);
-        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?).places(self.places()?))
+        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?).places(self.places()?).skips_hidden(self.skip_hidden))
     }
 
     fn tiles(&self) -> Result<TilesDesc> {
-        Ok(TilesDesc::default().places(self.places()?))
+        Ok(TilesDesc::default().places(self.places()?).skips_hidden(self.skip_hidden))
     }
 
     fn places(&self) -> Result<u32> {

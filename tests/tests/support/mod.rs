@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 pub(crate) mod hair;
+pub(crate) mod passes;
 
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_wgpu::WgpuBackend;

@@ -31,8 +31,8 @@ const SLICES: u32 = 64u;
 const MASS_UNIT: f32 = 256.0;
 // Parts of the depth of a pixel: before `near`, and equal ones from there to `far`.
 const PARTS: u32 = 4u;
-// Of a sum of optical depths, in bits.
-const BIT: f32 = 64.0;
+// Of a sum of optical depths, in bits: as many fragments as a GPU can have at work do not make it overflow.
+const BIT: f32 = 1024.0;
 // Larger than any nearness.
 const NEVER: f32 = 3e38;
 // A share of a nearness: more than rounding can move a fragment out of its part.

@@ -11,7 +11,7 @@ import package::tile::TILE;
 // As multiples of the mass that would close all pixels of a tile if they had the same: where hair is expected to begin to be opaque,
 // and where it is opaque in all pixels but of tiles that hair does not fill.
 const FIRST: f32 = 1.0;
-const LAST: f32 = 3.5;
+const LAST: f32 = 2.7;
 
 // The farthest that the opaque scene shows in a tile.
 fn scene_of(tile: u32) -> f32 {
