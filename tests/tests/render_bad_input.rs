@@ -32,6 +32,9 @@ fn techniques() -> Vec<Technique> {
         mean.fill(RASTER).into(),
         mean.ordered(true).into(),
         mean.ordered(true).fill(RASTER).into(),
+        lists.skips_hidden(true).into(),
+        lists.skips_hidden(true).cap(2).fill(RASTER).into(),
+        mean.skips_hidden(true).into(),
         tiles.into(),
         AutoDesc::default().into(),
     ]

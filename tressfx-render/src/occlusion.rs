@@ -84,10 +84,17 @@ pub(crate) struct Occlusion {
 }
 
 impl Occlusion {
-    pub(crate) fn new(backend: &dyn Backend, wanted: Option<bool>, size: [u32; 2], output: Output) -> Self {
+    /// Kernels are compiled at once where they will be needed for sure.
+    pub(crate) fn new(
+        backend: &mut dyn Backend,
+        wanted: Option<bool>,
+        size: [u32; 2],
+        output: Output,
+    ) -> Result<Self> {
         let dense = if backend.caps().is_cpu { DENSE_ON_A_CPU } else { DENSE };
-        let (kernels, memory) = (None, None);
-        Self { wanted, size, output, kernels, memory, dense, is_dense: false, frame: 0, room: Room::default() }
+        let kernels = if wanted == Some(true) { Some(Kernels::new(backend, output)?) } else { None };
+        let (memory, room) = (None, Room::default());
+        Ok(Self { wanted, size, output, kernels, memory, dense, is_dense: false, frame: 0, room })
     }
 
     /// Whether so many fragments are so dense that most of them are hidden by others.

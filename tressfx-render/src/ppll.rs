@@ -210,7 +210,7 @@ impl Ppll {
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
             bounded: Bounded::default(),
-            occlusion: Occlusion::new(backend, desc.looks_for_hidden(), size, output),
+            occlusion: Occlusion::new(backend, desc.looks_for_hidden(), size, output)?,
             kept: 0,
             unproven: None,
             views: 1,
@@ -220,6 +220,9 @@ impl Ppll {
         if desc.cap.is_some() {
             let prepared = made.prepare(backend, desc)?;
             made.bound(backend, desc, prepared);
+        }
+        if made.occlusion.is_wanted() {
+            made.prepare_lists(backend)?;
         }
         Ok(made)
     }
@@ -318,10 +321,15 @@ impl Ppll {
     /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
     fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
         if self.occlusion.prepare(backend)? {
-            self.fill.prepare_lists(backend)?;
             self.forget_bindings();
         }
-        self.bounded.prepare_lists(backend, self.occlusion.is_ready())
+        if self.occlusion.is_ready() { self.prepare_lists(backend) } else { Ok(()) }
+    }
+
+    /// Makes what it takes to walk lists of segments.
+    fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        self.fill.prepare_lists(backend)?;
+        self.bounded.prepare_lists(backend)
     }
 
     /// Gives back all nodes, until more are reserved.

@@ -118,27 +118,35 @@ impl ShortCut {
         check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
         check(backend, desc, size, output)?;
         let k = output.walk().constant("K", desc.k);
-        Ok(Self {
+        let mut made = Self {
             desc: *desc,
             output,
             depths: Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?,
             colors: Segments::new(backend, desc.fill, colors::SHADERS, &desc.specialization(output), output.color)?,
             resolve: resolve::Resolve::new(backend, desc, output)?,
-            occlusion: Occlusion::new(backend, Some(desc.skips_hidden), size, output),
+            occlusion: Occlusion::new(backend, Some(desc.skips_hidden), size, output)?,
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
-        })
+        };
+        if desc.skips_hidden {
+            made.prepare_lists(backend)?;
+        }
+        Ok(made)
     }
 
     /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
     fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
         if self.occlusion.prepare(backend)? {
-            self.depths.prepare_lists(backend)?;
-            self.colors.prepare_lists(backend)?;
             self.depths.forget_bindings();
             self.colors.forget_bindings();
         }
         Ok(())
+    }
+
+    /// Makes what it takes to walk lists of segments.
+    fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        self.depths.prepare_lists(backend)?;
+        self.colors.prepare_lists(backend)
     }
 
     #[cfg(test)]

@@ -23,7 +23,7 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volu
 const COPIES: &str = "[material]\ncopies = 3\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 25] = [
+const VARIANTS: [&[&str]; 28] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml", "--fields"],
@@ -48,6 +48,9 @@ const VARIANTS: [&[&str]; 25] = [
     &["--oit", "ppll", "--places", "4", "--fill", "raster"],
     &["--oit", "ppll", "--places", "16", "--oit-cap", "8", "--hair-output"],
     &["--oit", "ppll", "--oit-tail", "weighted"],
+    &["--oit", "ppll", "--skip-hidden", "true"],
+    &["--oit", "ppll", "--skip-hidden", "true", "--oit-cap", "8", "--fill", "raster", "--params", "copies.toml"],
+    &["--oit", "shortcut", "--skip-hidden", "true"],
     &["--oit", "ppll", "--places", "64", "--oit-tail", "weighted", "--oit-cap", "8", "--hair-output"],
 ];
 
@@ -124,8 +127,10 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "global_shape",
         "hair_output",
         "internal_damping",
+        "listed",
         "morphs",
         "noise",
+        "occluded",
         "open_edges",
         "ordered",
         "own_colors",

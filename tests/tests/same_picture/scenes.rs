@@ -121,7 +121,7 @@ impl Setting {
     }
 
     /// Every technique, so set.
-    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 13] {
+    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 15] {
         let &Self { k, tail, cap, layers, .. } = self;
         let mut lists = PpllDesc::default().k(k).tail(tail).cap(cap);
         lists.max_node_bytes = self.nodes.unwrap_or(lists.max_node_bytes);
@@ -139,6 +139,8 @@ impl Setting {
             ("mean, raster", mean.fill(Fill::Raster).into()),
             ("in order", mean.ordered(true).into()),
             ("in order, raster", mean.ordered(true).fill(Fill::Raster).into()),
+            ("lists, nothing hidden", lists.skips_hidden(true).into()),
+            ("mean, nothing hidden, raster", mean.skips_hidden(true).fill(Fill::Raster).into()),
             ("tiles", tiles.into()),
             ("tiles, four places", tiles.places(4).skips_hidden(true).into()),
             ("tiles, 16 places", tiles.places(16).into()),

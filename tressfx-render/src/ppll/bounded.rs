@@ -100,9 +100,9 @@ impl Bounded {
         Ok(Prepared { kernels, memory: Memory::new(backend, size, desc.asked(), output)? })
     }
 
-    /// Makes what it takes to walk lists of segments, once they are walked and there are kernels.
-    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend, are_walked: bool) -> Result<()> {
-        if let Some(kernels) = self.kernels.as_mut().filter(|_| are_walked) {
+    /// Makes what it takes to walk lists of segments, once there are kernels.
+    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
+        if let Some(kernels) = &mut self.kernels {
             kernels.nearest.prepare_lists(backend)?;
             kernels.fill.prepare_lists(backend)?;
         }

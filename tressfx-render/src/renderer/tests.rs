@@ -3,6 +3,7 @@
 use tressfx_core::null::NullBackend;
 
 use super::*;
+use crate::occlusion::OcclusionUniform;
 use crate::ppll::{K_RANGE, Ppll, PpllDesc};
 use crate::segments::Fill;
 use crate::shortcut::{ShortCut, ShortCutDesc};
@@ -88,6 +89,19 @@ fn every_kernel_fits_the_limits_of_webgpu() {
         let counts = shortcut(&mut backend, k, ordered).shaders().map(|shader| shader.storage_buffers());
         assert_eq!(counts.into_iter().max(), Some(7), "{counts:?}: what `check` asks for");
     }
+    let mut hiding = NullBackend::default();
+    let desc = RenderDesc::new([64, 64], Format::Rgba16F).technique(PpllDesc::default().cap(8).skips_hidden(true));
+    HairRenderer::new(&mut hiding, &desc.hair_output(true)).unwrap();
+    let mut of_occlusion = 0;
+    for shader in &hiding.shaders {
+        assert!(shader.storage_buffers() <= 8, "{shader:?}: what `check` asks for");
+        let is_own = shader.label.starts_with("hair.render.occlusion_");
+        of_occlusion += u32::from(is_own);
+        if is_own && !shader.label.ends_with("_list") {
+            shader.check_layout::<OcclusionUniform>().unwrap();
+        }
+    }
+    assert_eq!(of_occlusion, 5);
     let shadows = Shadows::new(&mut backend, &ShadowDesc::default(), true).unwrap();
     assert!(shadows.shaders().into_iter().all(|shader| shader.storage_buffers() <= 5));
     let velocity = Velocity::new(&mut backend, [64, 64], true).unwrap();
