@@ -246,8 +246,9 @@ fn everything() -> PassList {
     let glass = Material::default().with(|material| material.fibre = Some(FibreScattering::default()));
     let light = Light::directional(glam::Vec3::Y, glam::Vec3::ONE).opaque(map);
     let lights = Lights { sky: glam::Vec3::ONE, lights: vec![light], ..Lights::default() };
-    let techniques: [Technique; 8] = [
+    let techniques: [Technique; 9] = [
         PpllDesc::default().into(),
+        PpllDesc::default().skips_hidden(true).into(),
         // No room for all fragments.
         PpllDesc::default().max_node_bytes(16 * 8).into(),
         PpllDesc::default().fill(Fill::Raster).into(),
@@ -297,6 +298,7 @@ fn the_table_of_passes_has_every_pass_with_what_it_binds() {
             "roots" => false,
             "rest" => label.starts_with("hair.sim."),
             "nearest_keys" => slot.kind.is_written(),
+            "listed" => label == "hair.render.occlusion_sums",
             _ => true,
         };
         for slot in shaders.iter().flat_map(|shader| &shader.slots).filter(in_table) {

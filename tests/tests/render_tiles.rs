@@ -8,11 +8,8 @@ use glam::{DVec4, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::render::{Difference, Groom, Picture, Screen, Setup};
-use tressfx_core::error::Label;
-use tressfx_core::pass::{Command, PassList};
-use tressfx_core::shader::Binding;
 use tressfx_core::view::Pose;
-use tressfx_render::{Counters, SectionDraw, TilesDesc, ViewDraw, reference};
+use tressfx_render::{Counters, TilesDesc, reference};
 
 use support::hair::{endless, faint, tiles, varied};
 use support::passes::read;

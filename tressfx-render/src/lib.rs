@@ -10,6 +10,12 @@
 //! hair.render.shadow_opaque     compute  one thread a strand vertex: what the opaque scene leaves of lights HairRenderer
 //! hair.render.shade             compute  one thread a strand vertex: its colour as the view sees it         HairRenderer
 //!
+//! hair.render.occlusion_mass    compute  one thread a strand segment of a sample: how much hair tiles have  skips_hidden
+//! hair.render.occlusion_guess   compute  one thread a tile: between which depths it may be opaque           skips_hidden
+//! hair.render.occlusion_list    compute  four segments a thread, twice: those that may be seen              skips_hidden
+//! hair.render.occlusion_sums    compute  one thread a listed segment: optical depths of parts of pixels     skips_hidden
+//! hair.render.occlusion_depth   compute  one thread a pixel: from where on its hair is opaque               skips_hidden
+//!
 //! hair.render.nearest           compute  one thread a strand segment: the K nearest, where lists are bounded Technique::Ppll
 //! hair.render.fill              compute  one thread a strand segment: its fragments into the pixels' lists  Technique::Ppll
 //! hair.render.resolve           compute  one thread a pixel: the K nearest sorted, the rest summed up       Technique::Ppll
