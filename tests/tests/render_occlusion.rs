@@ -96,9 +96,9 @@ fn no_pixel_becomes_clearer_by_a_thousandth() {
 
 #[test]
 fn the_picture_is_nearer_to_the_exact_order() {
-    for (groom, desc) in dense().into_iter().flat_map(|groom| {
-        [(groom.clone(), PpllDesc::default()), (groom, PpllDesc::default().k(2))]
-    }) {
+    for (groom, desc) in
+        dense().into_iter().flat_map(|groom| [(groom.clone(), PpllDesc::default()), (groom, PpllDesc::default().k(2))])
+    {
         let Some(screen) = screen(at(desc.skips_hidden(true))) else { return };
         let exact = screen.exact(&[&groom]);
         let pictures = lists(desc).map(|technique| Some(support::screen(at(technique))?.hair(&[&groom])));
@@ -246,7 +246,8 @@ fn holds_what_is_seen(list: &[u32], fragments: &[(usize, f64, f64, u32)], seen: 
     let count = list[0] as usize;
     let listed: HashSet<u32> = list[1..=count].iter().copied().collect();
     assert_eq!(listed.len(), count, "a segment is listed once");
-    let is_seen = |&&(pixel, nearness, _, _): &&(usize, f64, f64, u32)| nearness > f64::from(seen[pixel]) * (1.0 + 1e-6);
+    let is_seen =
+        |&&(pixel, nearness, _, _): &&(usize, f64, f64, u32)| nearness > f64::from(seen[pixel]) * (1.0 + 1e-6);
     let needed: HashSet<u32> = fragments.iter().filter(is_seen).map(|&(.., segment)| segment).collect();
     let missing = needed.difference(&listed).count();
     eprintln!("{count} of {} segments are listed, {} are seen", list.len() - 1, needed.len());
@@ -257,7 +258,8 @@ fn holds_what_is_seen(list: &[u32], fragments: &[(usize, f64, f64, u32)], seen: 
 #[test]
 fn bounded_lists_are_those_with_room_for_all() {
     let [groom, pale] = dense();
-    for desc in [PpllDesc::default(), PpllDesc::default().tail(Tail::Weighted), PpllDesc::default().fill(Fill::Raster)] {
+    for desc in [PpllDesc::default(), PpllDesc::default().tail(Tail::Weighted), PpllDesc::default().fill(Fill::Raster)]
+    {
         let desc = desc.skips_hidden(true);
         let pictures = [desc, desc.cap(8)].map(|desc| Some(screen(at(desc))?.hair(&[&groom, &pale])));
         let [Some(all), Some(bounded)] = pictures else { return };

@@ -85,12 +85,7 @@ pub(crate) struct Occlusion {
 
 impl Occlusion {
     /// Kernels are compiled at once where they will be needed for sure.
-    pub(crate) fn new(
-        backend: &mut dyn Backend,
-        wanted: Option<bool>,
-        size: [u32; 2],
-        output: Output,
-    ) -> Result<Self> {
+    pub(crate) fn new(backend: &mut dyn Backend, wanted: Option<bool>, size: [u32; 2], output: Output) -> Result<Self> {
         let dense = if backend.caps().is_cpu { DENSE_ON_A_CPU } else { DENSE };
         let kernels = if wanted == Some(true) { Some(Kernels::new(backend, output)?) } else { None };
         let (memory, room) = (None, Room::default());

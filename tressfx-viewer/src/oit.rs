@@ -140,7 +140,11 @@ impl Oit {
         let tail = self.oit_tail.map_or(Tail::Shaded, TailName::tail);
         let desc = PpllDesc::default().tail(tail).cap(self.oit_cap).fill(self.fill.fill());
         let bytes = self.oit_bytes.unwrap_or(desc.max_node_bytes);
-        Ok(desc.max_node_bytes(bytes).k(self.k(desc.k, &K_RANGE)?).places(self.places()?).skips_hidden(self.skip_hidden))
+        Ok(desc
+            .max_node_bytes(bytes)
+            .k(self.k(desc.k, &K_RANGE)?)
+            .places(self.places()?)
+            .skips_hidden(self.skip_hidden))
     }
 
     fn tiles(&self) -> Result<TilesDesc> {

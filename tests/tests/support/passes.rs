@@ -16,7 +16,11 @@ pub(crate) fn bound(list: &PassList, label: Label, name: &str) -> Binding {
 }
 
 /// Draws grooms over the scene that is there, and reads what passes bound under these names.
-pub(crate) fn read<const N: usize>(screen: &mut Screen, grooms: &[&Groom], names: [(Label, &str, u64); N]) -> [Vec<u32>; N] {
+pub(crate) fn read<const N: usize>(
+    screen: &mut Screen,
+    grooms: &[&Groom],
+    names: [(Label, &str, u64); N],
+) -> [Vec<u32>; N] {
     let mut list = PassList::new();
     let sections: Vec<_> = grooms.iter().map(|groom| screen.section(&mut list, groom)).collect();
     let draws: Vec<_> = sections

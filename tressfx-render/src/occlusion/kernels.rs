@@ -6,8 +6,8 @@ use tressfx_core::id::{BufferId, TextureId};
 use tressfx_core::pass::{Grid, Groups, PassList};
 use tressfx_core::shader::{Binding, Module, Specialization};
 
-use super::memory::{Listed, Memory};
 use super::STRIDE;
+use super::memory::{Listed, Memory};
 use crate::bound::Pass;
 use crate::output::Output;
 use crate::resolved::tile_count;

@@ -154,11 +154,7 @@ impl NodePool {
 
     /// What the shaders that fill it bind of it, beside the heads.
     pub(crate) fn bindings(&self, view: &BoundView) -> [(&'static str, Binding); 3] {
-        [
-            ("pool", self.uniform.into()),
-            ("nodes", self.nodes.into()),
-            ("counters", self.counters.of(view.index).into()),
-        ]
+        [("pool", self.uniform.into()), ("nodes", self.nodes.into()), ("counters", self.counters.of(view.index).into())]
     }
 
     /// What it takes for `size` pixels.

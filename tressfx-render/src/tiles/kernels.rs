@@ -138,9 +138,9 @@ impl Kernels {
         let reopen = ("tile_reopen", include_str!("../../shaders/tiles/tile_reopen.wgsl"));
         let plain = Specialization::new();
         let lanes = lanes(desc, is_cpu)?;
-        let blend = lanes.iter().map(|&lanes| {
-            pass(backend, "hair.render.tile_blend", blend, &blended.clone().constant("LANES", lanes))
-        });
+        let blend = lanes
+            .iter()
+            .map(|&lanes| pass(backend, "hair.render.tile_blend", blend, &blended.clone().constant("LANES", lanes)));
         let blend = blend.collect::<Result<_>>()?;
         Ok(Self {
             blend,
