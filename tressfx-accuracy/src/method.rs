@@ -14,17 +14,22 @@ pub(crate) struct Family {
 }
 
 /// All families, in the order of the tables.
-pub(crate) const FAMILIES: [Family; 10] = [
-    Family { name: "ppll", words: &["--oit", "ppll"], ks: &[0, 1, 2, 4, 8, 16, 32], quick_ks: &[1, 4, 8, 16] },
+pub(crate) const FAMILIES: [Family; 12] = [
+    Family {
+        name: "ppll",
+        words: &["--oit", "ppll", "--skip-hidden", "false"],
+        ks: &[0, 1, 2, 4, 8, 16, 32],
+        quick_ks: &[1, 4, 8, 16],
+    },
     Family {
         name: "ppll-raster",
-        words: &["--oit", "ppll", "--fill", "raster"],
+        words: &["--oit", "ppll", "--skip-hidden", "false", "--fill", "raster"],
         ks: &[0, 1, 2, 4, 8, 16, 32],
         quick_ks: &[8],
     },
     Family {
         name: "ppll-weighted",
-        words: &["--oit", "ppll", "--oit-tail", "weighted"],
+        words: &["--oit", "ppll", "--skip-hidden", "false", "--oit-tail", "weighted"],
         ks: &[4, 8, 16],
         quick_ks: &[8],
     },
@@ -34,12 +39,19 @@ pub(crate) const FAMILIES: [Family; 10] = [
         ks: &[8],
         quick_ks: &[8],
     },
+    Family { name: "ppll-skip-hidden", words: &["--oit", "ppll", "--skip-hidden", "true"], ks: &[8], quick_ks: &[] },
     Family { name: "shortcut-mean", words: &["--oit", "shortcut"], ks: &[1, 2, 3, 4, 8], quick_ks: &[1, 3, 8] },
     Family {
         name: "shortcut-ordered",
         words: &["--oit", "shortcut", "--oit-ordered"],
         ks: &[1, 2, 3, 4, 8],
         quick_ks: &[3, 8],
+    },
+    Family {
+        name: "shortcut-mean-skip-hidden",
+        words: &["--oit", "shortcut", "--skip-hidden", "true"],
+        ks: &[3],
+        quick_ks: &[],
     },
     Family { name: "tiles", words: &["--oit", "tiles"], ks: &[], quick_ks: &[] },
     Family { name: "tiles-4-places", words: &["--oit", "tiles", "--places", "4"], ks: &[], quick_ks: &[] },
@@ -82,7 +94,7 @@ fn of_family(family: &Family, extent: Extent) -> Vec<Method> {
     let words =
         |more: &[String]| family.words.iter().map(|word| (*word).to_owned()).chain(more.iter().cloned()).collect();
     let ks = if extent == Extent::Quick { family.quick_ks } else { family.ks };
-    if ks.is_empty() {
+    if family.ks.is_empty() {
         return vec![Method { name: family.name.to_owned(), words: words(&[]) }];
     }
     let of = |k: &u32| Method {
@@ -124,11 +136,11 @@ mod tests {
             names.dedup();
             assert_eq!(names.len(), count);
         }
-        assert_eq!(methods(Extent::Full).len(), 32);
+        assert_eq!(methods(Extent::Full).len(), 34);
         let named = |name: &str| named(methods(Extent::Full), &[name.to_owned()]);
-        assert_eq!(named("tiles-4-places").unwrap(), methods(Extent::Full)[29..30]);
+        assert_eq!(named("tiles-4-places").unwrap(), methods(Extent::Full)[31..32]);
         assert!(named("tiles-5-places").unwrap_err().to_string().contains("tiles-16-places"));
         assert_eq!(family_of("ppll-raster-k8"), Some((1, "8")));
-        assert_eq!(family_of("tiles"), Some((6, "")));
+        assert_eq!(family_of("tiles"), Some((8, "")));
     }
 }

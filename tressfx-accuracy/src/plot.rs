@@ -14,14 +14,16 @@ const SIZE: (u32, u32) = (940, 480);
 /// Where the legend begins: beside the plot, since points may lie anywhere in it.
 const LEGEND: i32 = 690;
 
-/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey and a brown are added).
+/// A colour a family; these are told apart by people who see few colours too (Okabe and Ito; the yellow is darker, and a grey, a brown, a violet and a dark red are added).
 pub(crate) const COLORS: [RGBColor; FAMILIES.len()] = [
     RGBColor(0, 114, 178),
     RGBColor(86, 180, 233),
     RGBColor(184, 172, 20),
     RGBColor(120, 120, 120),
+    RGBColor(90, 40, 140),
     RGBColor(213, 94, 0),
     RGBColor(230, 159, 0),
+    RGBColor(150, 0, 40),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(0, 0, 0),
