@@ -19,6 +19,7 @@ use crate::output::Output;
 use crate::predict;
 use crate::renderer::Targets;
 use crate::resolved::TILE;
+use crate::segments::Fill;
 use crate::strands::SectionDraw;
 use crate::tiles::distances;
 use crate::views::BoundView;
@@ -54,6 +55,9 @@ const DENSE: f64 = 40.0;
 /// The same on a CPU, which takes longer for a fragment (lavapipe: at 3.5 as long, at 14 0.3).
 const DENSE_ON_A_CPU: f64 = 6.0;
 
+/// The same where raster passes make fragments, which takes many times as long on a GPU with few raster units (H200: at 3.5 0.6).
+const DENSE_IN_RASTER: f64 = 3.0;
+
 /// Where fewer fragments are predicted, to look for what is hidden takes longer than to draw it.
 const LEAST: f64 = 1e6;
 
@@ -85,8 +89,18 @@ pub(crate) struct Occlusion {
 
 impl Occlusion {
     /// Kernels are compiled at once where they will be needed for sure.
-    pub(crate) fn new(backend: &mut dyn Backend, wanted: Option<bool>, size: [u32; 2], output: Output) -> Result<Self> {
-        let dense = if backend.caps().is_cpu { DENSE_ON_A_CPU } else { DENSE };
+    pub(crate) fn new(
+        backend: &mut dyn Backend,
+        wanted: Option<bool>,
+        fill: Fill,
+        size: [u32; 2],
+        output: Output,
+    ) -> Result<Self> {
+        let dense = match fill {
+            Fill::Raster => DENSE_IN_RASTER,
+            Fill::Compute if backend.caps().is_cpu => DENSE_ON_A_CPU,
+            Fill::Compute => DENSE,
+        };
         let kernels = if wanted == Some(true) { Some(Kernels::new(backend, output)?) } else { None };
         let (memory, room) = (None, Room::default());
         Ok(Self { wanted, size, output, kernels, memory, dense, is_dense: false, frame: 0, room })

@@ -102,7 +102,7 @@ impl Ppll {
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
             bounded: Bounded::default(),
-            occlusion: Occlusion::new(backend, desc.looks_for_hidden(), size, output)?,
+            occlusion: Occlusion::new(backend, desc.looks_for_hidden(), desc.fill, size, output)?,
             kept: 0,
             unproven: None,
             views: 1,

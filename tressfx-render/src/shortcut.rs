@@ -124,7 +124,7 @@ impl ShortCut {
             depths: Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?,
             colors: Segments::new(backend, desc.fill, colors::SHADERS, &desc.specialization(output), output.color)?,
             resolve: resolve::Resolve::new(backend, desc, output)?,
-            occlusion: Occlusion::new(backend, Some(desc.skips_hidden), size, output)?,
+            occlusion: Occlusion::new(backend, Some(desc.skips_hidden), desc.fill, size, output)?,
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
         };
