@@ -76,6 +76,11 @@ impl Room {
     }
 }
 
+/// Bytes from the grid of a section to that of the next one.
+fn grid_stride(alignment: u64) -> u64 {
+    GRID_BYTES.next_multiple_of(alignment)
+}
+
 /// Bytes that the list of a section takes.
 fn bytes_of(alignment: u64, draw: &SectionDraw) -> u64 {
     (HEADER_BYTES + 4 * u64::from(draw.segments())).next_multiple_of(alignment)
@@ -116,7 +121,7 @@ impl Memory {
     pub(super) fn new(backend: &mut dyn Backend, size: [u32; 2], views: usize, room: Room) -> Result<Self> {
         let alignment = backend.caps().binding_alignment;
         let [masses, tiles, opticals] = sizes(size);
-        let grid_bytes = (alignment * room.sections).max(GRID_BYTES);
+        let grid_bytes = (grid_stride(alignment) * room.sections).max(GRID_BYTES);
         let texture = TextureDesc::new("hair.render.occluded", size, Format::R32F).storage();
         let uniforms = UniformArray::new(backend, "hair.render.occlusion", views)?;
         let bytes = masses + tiles + opticals + texture.bytes() + room.bytes + grid_bytes + uniforms.bytes();
@@ -163,7 +168,7 @@ impl Memory {
         let place = |(index, draw): (usize, &SectionDraw)| {
             let (begin, bytes) = (first, HEADER_BYTES + 4 * u64::from(draw.segments()));
             first += bytes_of(self.alignment, draw);
-            let grid = self.alignment * index as u64;
+            let grid = grid_stride(self.alignment) * index as u64;
             Listed {
                 segments: self.lists.range(begin, bytes),
                 grid: self.grids.range(grid, GRID_BYTES),
