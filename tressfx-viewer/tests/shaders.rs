@@ -197,6 +197,7 @@ fn labels_of_kernels() -> BTreeSet<String> {
     let folders = [
         ("sim", "shaders"),
         ("render", "shaders"),
+        ("render", "shaders/occlusion"),
         ("render", "shaders/ppll"),
         ("render", "shaders/shadow"),
         ("render", "shaders/shortcut"),
