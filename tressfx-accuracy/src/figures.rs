@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use crate::change::Change;
+use crate::method;
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +159,17 @@ impl Run {
         Ok(Self { rows: rows.collect(), ..self.clone() })
     }
 
+    /// The same with the methods of a newer run in the place of what it knows of them, in the scenes of that run.
+    pub(crate) fn with_methods(self, newer: Self) -> Result<Self> {
+        let is_newer = |row: &Row| newer.of_scene(&row.scene).any(|other| other.method == row.method);
+        let scenes = newer.scenes();
+        let stay = self.rows.iter().filter(|row| scenes.contains(&row.scene.as_str()) && !is_newer(row)).cloned();
+        let mut rows: Vec<Row> = stay.chain(newer.rows.iter().cloned()).collect();
+        let place = |row: &Row| scenes.iter().position(|scene| *scene == row.scene);
+        rows.sort_by_key(|row| (place(row), method::place(&row.method)));
+        self.with(Self { rows, ..newer.clone() })
+    }
+
     pub(crate) fn of_scene<'a>(&'a self, scene: &'a str) -> impl Iterator<Item = &'a Row> {
         self.rows.iter().filter(move |row| row.scene == scene)
     }
@@ -250,6 +262,21 @@ pub(crate) mod tests {
         };
         assert!(stored.clone().with(drawn_by("a GPU (of a newer driver)")).is_ok());
         assert!(stored.with(drawn_by("a CPU")).unwrap_err().to_string().contains("a CPU"));
+    }
+
+    #[test]
+    fn rows_of_methods_that_were_not_measured_again_stay() {
+        let of = |rows: &[(&str, &str, f64)]| {
+            let row =
+                |&(scene, method, flip): &(&str, &str, f64)| Row { scene: scene.into(), ..row(method, flip, 0.5) };
+            let rows = rows.iter().map(row).collect();
+            Run { setting: Extent::Full.setting(), rows, changes: Vec::new(), note: None }
+        };
+        let stored = of(&[("a", "ppll-k8", 0.1), ("a", "tiles", 0.2), ("b", "ppll-k8", 0.3), ("b", "tiles", 0.4)]);
+        let newer = of(&[("a", "ppll-k2", 0.5), ("a", "tiles", 0.6)]);
+        let merged = [("a", "ppll-k2", 0.5), ("a", "ppll-k8", 0.1), ("a", "tiles", 0.6)];
+        let all = [&merged[..], &[("b", "ppll-k8", 0.3), ("b", "tiles", 0.4)]].concat();
+        assert_eq!(stored.with_methods(newer).unwrap(), of(&all));
     }
 
     #[test]

@@ -48,8 +48,8 @@ struct Args {
     /// Take run times alone anew: for when a change has left the pictures as they were. Errors stay
     #[arg(long, conflicts_with_all = ["check", "light", "pages", "fresh"])]
     times: bool,
-    /// Of this method alone, and of others that are named so
-    #[arg(long = "method", value_name = "NAME", requires = "times")]
+    /// Of this method alone, and of others that are named so; the rows of all others stay
+    #[arg(long = "method", value_name = "NAME", conflicts_with_all = ["check", "light", "pages"])]
     methods: Vec<String>,
     /// What runs the passes; with --times what ran them before
     #[arg(long, value_enum, default_value_t = Device::Wgpu)]
@@ -115,7 +115,9 @@ fn main() -> Result<()> {
         plot(&run, extent, &args.docs)?;
         return page::write(&run, extent, &args.docs);
     }
-    if let Some(stored) = stored.as_ref().filter(|_| args.check || args.times || !args.scenes.is_empty()) {
+    if let Some(stored) =
+        stored.as_ref().filter(|_| args.check || args.times || !args.scenes.is_empty() || !args.methods.is_empty())
+    {
         // Said before all is measured.
         stored.check_setting(extent.setting())?;
     }
@@ -130,6 +132,7 @@ fn main() -> Result<()> {
     let mut run = Run { setting: extent.setting(), rows, changes: Vec::new(), note: None };
     match stored {
         Some(stored) if args.check => return check::check(&stored, &run),
+        Some(stored) if !args.methods.is_empty() => run = stored.with_methods(run)?,
         Some(stored) if !args.scenes.is_empty() => run = stored.with(run)?,
         _ => {}
     }

@@ -122,6 +122,12 @@ pub(crate) fn family_of(method: &str) -> Option<(usize, &str)> {
     Some((FAMILIES.iter().position(|family| family.name == name)?, setting))
 }
 
+/// Where a method comes in the tables.
+pub(crate) fn place(method: &str) -> Option<(usize, u32)> {
+    let (family, setting) = family_of(method)?;
+    Some((family, setting.parse().unwrap_or(0)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
