@@ -53,7 +53,7 @@ fn the_nearest_fragments_are_the_same_to_the_bit() {
     let nearest = PpllDesc::default().k(4).tail(Tail::None);
     let [groom, pale] = dense();
     let aside = Groom { pose: Pose { translation: Vec3::new(0.3, 0.1, 0.5), ..Pose::IDENTITY }, ..pale.clone() };
-    let copied = Groom { material: groom.material.clone().with(|m| m.copies = 2), ..groom.clone() };
+    let copied = Groom { material: groom.material.with(|m| m.copies = 2), ..groom.clone() };
     let few = Groom { lod: Lod { share: 0.5, ..Lod::FULL }, ..groom.clone() };
     let wall = wall(0.1, 0.2);
     let scenes: [(&[&Mesh], &[&Groom], f64); 5] = [
