@@ -7,9 +7,9 @@ use std::collections::{HashMap, HashSet};
 use glam::{DVec4, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Load, PassList, RasterPass};
 use tressfx_core::shader::Binding;
-use tressfx_core::view::Pose;
+use tressfx_core::view::{Pose, View, Viewport};
 use tressfx_render::uniforms::{LensUniform, ViewUniform};
 use tressfx_render::{Counters, Fill, Lod, PpllDesc, SectionDraw, ShortCutDesc, Tail, Technique, ViewDraw, reference};
 
@@ -288,6 +288,19 @@ fn sections_without_room_on_the_lists_are_drawn_whole_until_there_is() {
 }
 
 #[test]
+fn hidden_hair_is_left_out_of_dense_hair_by_default() {
+    let groom = &dense()[0];
+    let fragments = [None, Some(true), Some(false)].map(|skips| {
+        let technique = PpllDesc::default().skips_hidden(skips);
+        let larger = |setup: &mut Setup| (setup.technique, setup.size) = (technique.into(), [360, 260]);
+        Some(screen(larger)?.hair(&[groom]).counters.fragments)
+    });
+    let [Some(by_default), Some(some), Some(all)] = fragments else { return };
+    assert!(all > 1_000_000 && some < all / 2, "{some} of {all}");
+    assert_eq!(by_default, some, "it is predicted before the first frame");
+}
+
+#[test]
 fn little_hair_is_drawn_whole_unless_it_is_asked_for() {
     let groom = &dense()[0];
     let counters = [None, Some(false)].map(|skips| {
@@ -298,4 +311,81 @@ fn little_hair_is_drawn_whole_unless_it_is_asked_for() {
     let Some(mut screen) = screen(at(PpllDesc::default())) else { return };
     let refused = screen.renderer.retune(&mut *screen.backend, PpllDesc::default().skips_hidden(true)).unwrap_err();
     assert!(refused.to_string().contains("needs a new renderer"), "{refused}");
+}
+
+/// The picture of sections that are there already.
+fn drawn(screen: &mut Screen, draws: &[SectionDraw]) -> Vec<u8> {
+    let mut list = PassList::new();
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    screen.renderer.grow_to_predicted(&mut *screen.backend, &view, draws).unwrap();
+    let clear = RasterPass::new("test.clear").color(targets.color, Load::Clear([0.0; 4]));
+    list.raster(clear.depth(targets.depth, Load::Clear(view.depth().far())));
+    screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], draws).unwrap();
+    let ticket = list.read_texture(targets.color);
+    screen.backend.run(&list).unwrap();
+    screen.backend.read(ticket).ready().expect("it has run").to_vec()
+}
+
+#[test]
+fn sections_come_and_go() {
+    let nearest = PpllDesc::default().k(4).tail(Tail::None);
+    let [a, b] = dense();
+    let b = Groom { pose: Pose { translation: Vec3::new(0.2, 0.1, 0.4), ..Pose::IDENTITY }, ..b };
+    let pictures = lists(nearest).map(|technique| {
+        let mut screen = screen(at(technique))?;
+        let mut list = PassList::new();
+        let sections = [&a, &b].map(|groom| screen.section(&mut list, groom));
+        screen.backend.run(&list).unwrap();
+        let [one, other] = [(&sections[0], &a), (&sections[1], &b)]
+            .map(|(section, groom)| SectionDraw::new(section, &groom.material, groom.pose));
+        // Each has several places among the lists.
+        let frames: [&[SectionDraw]; 6] = [&[one, other], &[other], &[other, one], &[one], &[one, other], &[other]];
+        Some(frames.map(|draws| drawn(&mut screen, draws)))
+    });
+    let [Some(some), Some(all)] = pictures else { return };
+    for (frame, (some, all)) in some.iter().zip(&all).enumerate() {
+        assert!(some == all, "frame {frame}");
+        assert!(some.iter().any(|&byte| byte != 0), "there is hair in frame {frame}");
+    }
+    assert!(some[0] != some[1] && some[0] != some[3]);
+}
+
+#[test]
+fn views_of_one_frame_are_each_as_alone() {
+    let nearest = PpllDesc::default().k(4).tail(Tail::None);
+    let [groom, pale] = dense();
+    let pictures = lists(nearest).map(|technique| {
+        let mut screen = screen(at(technique))?;
+        let view = screen.view;
+        let views = [([0, 0], [61, 90]), ([64, 7], [61, 70])].map(|(offset, size)| {
+            let viewport = Viewport::part(offset, size, ODD).unwrap();
+            View::new(view.view_matrix(), view.projection_matrix(), view.depth(), viewport).unwrap()
+        });
+        Some(screen.views(&views, &[&groom, &pale]))
+    });
+    let [Some(some), Some(all)] = pictures else { return };
+    assert!(some.bytes == all.bytes, "{:?}", some.difference(&all.pixels()));
+    assert!(some.counters.fragments < all.counters.fragments);
+}
+
+#[test]
+fn memory_that_nobody_uses_is_given_back() {
+    let Some(mut screen) = screen(at(ShortCutDesc::default().skips_hidden(true))) else { return };
+    let empty = screen.renderer.technique_bytes();
+    let [groom, _] = dense();
+    let before = screen.backend_memory();
+    let counters = screen.hair(&[&groom]).counters;
+    let used = screen.renderer.technique_bytes();
+    assert!(used > empty + 24 * u64::from(ODD[0] * ODD[1]) + 4 * u64::from(groom.shape.segments()));
+    assert!(screen.backend_memory() >= before + used - empty, "it is counted as it is made");
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    for _ in 0..130 {
+        let mut list = PassList::new();
+        screen.renderer.draw(&mut list, &[ViewDraw::new(&view, &lights, targets)], &[]).unwrap();
+        screen.backend.run(&list).unwrap();
+    }
+    screen.renderer.grow_to_measured(&mut *screen.backend, &Counters::default()).unwrap();
+    let released = screen.renderer.technique_bytes();
+    assert!(released < empty + (used - empty) / 2, "{empty}, {used}, {released}");
+    assert_eq!(screen.hair(&[&groom]).counters, counters, "and is there again");
 }

@@ -64,6 +64,12 @@ const LEAST: f64 = 1e6;
 /// Frames after which it is predicted again how dense hair is.
 const FRAMES: u64 = 16;
 
+/// Hair is dense no more where it has less than this share of what it became dense at, so that no picture flickers between both.
+const BACK: f64 = 0.7;
+
+/// Frames after which memory is given back that was not in use.
+const UNUSED_FRAMES: u64 = 120;
+
 /// Pixels of the tiles that hair may touch.
 fn pixels(view: &View, draws: &[SectionDraw]) -> f64 {
     (u64::from(TILE * TILE) * predict::tiles(view, draws)) as f64
@@ -78,11 +84,16 @@ pub(crate) struct Occlusion {
     output: Output,
     kernels: Option<Kernels>,
     memory: Option<Memory>,
+    /// Of ranges of buffers that are bound.
+    alignment: u64,
     /// Fragments a pixel from which on hair is dense.
     dense: f64,
-    /// Whether hair was predicted to be so.
+    /// Whether hair was predicted to be so, in a view of the frame in which that was predicted last.
     is_dense: bool,
     frame: u64,
+    /// That frame, and the one in which hidden hair was looked for last.
+    predicted: u64,
+    used: u64,
     /// What the lists of the newest frame's sections take.
     room: Room,
 }
@@ -102,13 +113,27 @@ impl Occlusion {
             Fill::Compute => DENSE,
         };
         let kernels = if wanted == Some(true) { Some(Kernels::new(backend, output)?) } else { None };
-        let (memory, room) = (None, Room::default());
-        Ok(Self { wanted, size, output, kernels, memory, dense, is_dense: false, frame: 0, room })
+        let (memory, room, alignment) = (None, Room::default(), backend.caps().binding_alignment);
+        Ok(Self {
+            wanted,
+            size,
+            output,
+            kernels,
+            memory,
+            alignment,
+            dense,
+            is_dense: false,
+            frame: 0,
+            predicted: 0,
+            used: 0,
+            room,
+        })
     }
 
     /// Whether so many fragments are so dense that most of them are hidden by others.
     fn are_dense(&self, fragments: f64, view: &View, draws: &[SectionDraw]) -> bool {
-        fragments > LEAST && fragments > self.dense * pixels(view, draws)
+        let share = if self.is_dense { BACK } else { 1.0 };
+        fragments > share * LEAST && fragments > share * self.dense * pixels(view, draws)
     }
 
     /// Whether the next frame looks for hidden hair, if there is room for its lists.
@@ -122,23 +147,29 @@ impl Occlusion {
     }
 
     /// A view with so many fragments comes next.
-    pub(crate) fn expect(&mut self, backend: &dyn Backend, view: &View, draws: &[SectionDraw], fragments: f64) {
-        self.room = self.room.and(Room::of(backend.caps().binding_alignment, draws));
+    pub(crate) fn expect(&mut self, view: &View, draws: &[SectionDraw], fragments: f64) {
+        self.room = self.room.and(Room::of(self.alignment, draws));
         self.is_dense = self.are_dense(fragments, view, draws);
     }
 
     /// Makes what it takes to look for hidden hair, where that is wanted. Returns whether anything is new.
     pub(crate) fn prepare(&mut self, backend: &mut dyn Backend) -> Result<bool> {
-        if !self.is_wanted() || self.is_ready() || memory::check(backend, self.size, self.room).is_err() {
+        if self.memory.is_some() && self.frame - self.used > UNUSED_FRAMES {
+            self.release(backend);
+            self.room = Room::default();
+        }
+        let has_work = self.is_wanted() && self.room != Room::default();
+        if !has_work || self.is_ready() || memory::check(backend, self.size, self.room).is_err() {
             return Ok(false);
         }
         if self.kernels.is_none() {
             self.kernels = Some(Kernels::new(backend, self.output)?);
         }
-        let memory = Memory::new(backend, self.size, self.output.views, self.room)?;
+        let memory = Memory::new(backend, self.size, self.output.views, self.alignment, self.room)?;
         if let Some(old) = self.memory.replace(memory) {
             old.destroy(backend);
         }
+        self.used = self.frame;
         self.forget_bindings();
         Ok(true)
     }
@@ -171,6 +202,16 @@ impl Occlusion {
         self.kernels.iter_mut().for_each(Kernels::begin_frame);
     }
 
+    /// Predicts now and then how dense hair is: the densest view decides.
+    fn predict(&mut self, view: &View, draws: &[SectionDraw]) {
+        if self.frame % FRAMES != 1 || self.wanted.is_some() {
+            return;
+        }
+        let is_dense = self.are_dense(predict::fragments(view, draws), view, draws);
+        self.is_dense = is_dense || (self.is_dense && self.predicted == self.frame);
+        self.predicted = self.frame;
+    }
+
     /// Writes the passes of a view; none where hidden hair is not looked for.
     pub(crate) fn passes(
         &mut self,
@@ -179,18 +220,17 @@ impl Occlusion {
         draws: &[SectionDraw],
         targets: &Targets,
     ) -> Result<Option<Occluded>> {
-        if self.frame % FRAMES == 1 && view.index == 0 {
-            self.is_dense = self.are_dense(predict::fragments(view.view, draws), view.view, draws);
-        }
+        self.predict(view.view, draws);
         let is_wanted = self.is_wanted();
+        self.room = Room::of(self.alignment, draws);
         let (Some(kernels), Some(memory)) = (&mut self.kernels, &self.memory) else { return Ok(None) };
-        self.room = memory.room_of(draws);
         if !is_wanted || !memory.room.holds(self.room) {
             return Ok(None);
         }
         let [nearest, farthest] = distances(view.view, draws);
         let depth = farthest - nearest;
         memory.begin(list, view, OcclusionUniform { nearest, depth, closing: CLOSING, stride: STRIDE });
+        self.used = self.frame;
         let lists = memory.lists(draws);
         kernels.find(list, view, draws, targets.depth, memory, &lists)?;
         Ok(Some(Occluded { depth: memory.depth, lists }))
@@ -207,6 +247,11 @@ pub(crate) struct Occluded {
 }
 
 impl Listed {
+    /// What bindings with it differ by: sections have other places where others come and go.
+    pub(crate) fn place(&self) -> [u64; 2] {
+        [self.first, self.groups.1]
+    }
+
     /// What a walk binds.
     pub(crate) fn binding(&self) -> (&'static str, Binding) {
         ("listed", self.segments)

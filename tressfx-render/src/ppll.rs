@@ -274,7 +274,7 @@ impl TechniqueInstance for Ppll {
 
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         let fragments = predict::fragments(view, draws);
-        self.occlusion.expect(backend, view, draws, fragments);
+        self.occlusion.expect(view, draws, fragments);
         self.reserve(backend, fragments as u64)?;
         self.prepare_occlusion(backend)
     }

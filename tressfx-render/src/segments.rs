@@ -75,11 +75,11 @@ impl Recipe {
     }
 }
 
-/// A pipeline, and its bindings by view, section and scene.
+/// A pipeline, and its bindings by view, section, scene and the place of its list.
 #[derive(Debug)]
 struct Walk {
     pipeline: Pipeline,
-    bound: Bound<(usize, BufferId, TextureId)>,
+    bound: Bound<(usize, BufferId, TextureId, Option<[u64; 2]>)>,
 }
 
 /// Such a pass.
@@ -141,7 +141,9 @@ impl Segments {
         };
         let scene = occluded.map_or(targets.depth, |occluded| occluded.depth);
         let listed = |index: usize| occluded.map(|occluded| &occluded.lists[index]);
-        let key = |draw: &SectionDraw| (view.index, draw.strands.colors, scene);
+        let key = |index: usize, draw: &SectionDraw| {
+            (view.index, draw.strands.colors, scene, listed(index).map(Listed::place))
+        };
         let all = |index: usize, draw: &SectionDraw| {
             let mut all = [&draw.strands.bindings(view, scene)[..], own].concat();
             all.extend(listed(index).map(Listed::binding));
@@ -151,7 +153,7 @@ impl Segments {
         match pipeline {
             Pipeline::Compute(kernel) => {
                 for (index, draw) in draws.iter().enumerate() {
-                    let bindings = bound.get(key(draw), || kernel.bind(&all(index, draw)))?;
+                    let bindings = bound.get(key(index, draw), || kernel.bind(&all(index, draw)))?;
                     match listed(index) {
                         Some(&Listed { groups: (buffer, offset), .. }) => {
                             list.compute_indirect(kernel, &bindings, buffer, offset);
@@ -163,7 +165,7 @@ impl Segments {
             Pipeline::Raster(pipeline) => {
                 let mut pass = RasterPass::new(pipeline.label()).color(targets.color, Load::Keep);
                 for (index, draw) in draws.iter().enumerate() {
-                    let bindings = bound.get(key(draw), || pipeline.bind(&all(index, draw)))?;
+                    let bindings = bound.get(key(index, draw), || pipeline.bind(&all(index, draw)))?;
                     pass = pass.draw(match listed(index) {
                         Some(&Listed { draw: (buffer, offset), .. }) => {
                             Draw::indirect(pipeline, &bindings, buffer, offset)

@@ -171,7 +171,7 @@ impl TechniqueInstance for ShortCut {
 
     /// There is no pool.
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
-        self.occlusion.expect(backend, view, draws, predict::fragments(view, draws));
+        self.occlusion.expect(view, draws, predict::fragments(view, draws));
         self.prepare_occlusion(backend)
     }
 

@@ -27,12 +27,15 @@ const SEGMENTS_OF_A_GROUP: u32 = 1024;
 /// A section in a view before a scene.
 type Key = (usize, BufferId, TextureId);
 
+/// The same with the place of its list.
+type ListKey = (Key, [u64; 2]);
+
 #[derive(Debug)]
 pub(super) struct Kernels {
     mass: Pass<Key>,
     guess: Pass<(usize, TextureId)>,
-    list: Pass<Key>,
-    sums: Pass<Key>,
+    list: Pass<ListKey>,
+    sums: Pass<ListKey>,
     depth: Pass<(usize, TextureId)>,
 }
 
@@ -59,13 +62,15 @@ impl Kernels {
 
     pub(super) fn begin_frame(&mut self) {
         let Self { mass, guess, list, sums, depth } = self;
-        [mass, list, sums].into_iter().for_each(Pass::begin_frame);
+        mass.begin_frame();
+        [list, sums].into_iter().for_each(Pass::begin_frame);
         [guess, depth].into_iter().for_each(Pass::begin_frame);
     }
 
     pub(super) fn forget_bindings(&mut self) {
         let Self { mass, guess, list, sums, depth } = self;
-        [mass, list, sums].into_iter().for_each(Pass::forget_bindings);
+        mass.forget_bindings();
+        [list, sums].into_iter().for_each(Pass::forget_bindings);
         [guess, depth].into_iter().for_each(Pass::forget_bindings);
     }
 
@@ -94,7 +99,7 @@ impl Kernels {
         self.guess.record(list, (view.index, scene), all, &[shared[0], shared[1], masses, tiles, depth])?;
         self.list(list, view, draws, scene, memory, lists)?;
         for (draw, listed) in draws.iter().zip(lists) {
-            let key = (view.index, draw.strands.colors, scene);
+            let key = ((view.index, draw.strands.colors, scene), listed.place());
             let strands = draw.strands.bindings(view, scene);
             let own = [shared[1], tiles, opticals, listed.binding()];
             let (buffer, offset) = listed.groups;
@@ -117,7 +122,7 @@ impl Kernels {
     ) -> Result<()> {
         for (draw, listed) in draws.iter().zip(lists) {
             memory.empty(list, listed);
-            let key = (view.index, draw.strands.colors, scene);
+            let key = ((view.index, draw.strands.colors, scene), listed.place());
             let [view_of, section, positions, _, thickness, _] = draw.strands.bindings(view, scene);
             let own = [("tiles", memory.tiles.into()), ("list", listed.segments), ("grid", listed.grid)];
             let grid = Grid::for_threads(draw.segments(), SEGMENTS_OF_A_GROUP);

@@ -41,8 +41,8 @@ pub(crate) struct Listed {
     pub(crate) groups: (BufferId, u64),
     /// The same of the arguments of a draw.
     pub(crate) draw: (BufferId, u64),
-    /// Where the list begins in the buffer of all of them.
-    first: u64,
+    /// Where the list begins in the buffer of all of them. What is bound of it depends on that and on the place of its grid.
+    pub(super) first: u64,
 }
 
 /// What the lists of sections take.
@@ -118,8 +118,13 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    pub(super) fn new(backend: &mut dyn Backend, size: [u32; 2], views: usize, room: Room) -> Result<Self> {
-        let alignment = backend.caps().binding_alignment;
+    pub(super) fn new(
+        backend: &mut dyn Backend,
+        size: [u32; 2],
+        views: usize,
+        alignment: u64,
+        room: Room,
+    ) -> Result<Self> {
         let [masses, tiles, opticals] = sizes(size);
         let grid_bytes = (grid_stride(alignment) * room.sections).max(GRID_BYTES);
         let texture = TextureDesc::new("hair.render.occluded", size, Format::R32F).storage();
@@ -155,11 +160,6 @@ impl Memory {
         self.uniforms.upload(list, view.index, &[uniform]);
         view.region.clear_tiles(list, self.masses, MASS_BYTES);
         view.region.clear(list, self.opticals, OPTICAL_BYTES);
-    }
-
-    /// What the lists of sections take.
-    pub(super) fn room_of(&self, draws: &[SectionDraw]) -> Room {
-        Room::of(self.alignment, draws)
     }
 
     /// A list for each section.
