@@ -2,7 +2,7 @@
 //!
 //! From the mass of hair in each tile it is guessed between which depths its pixels become opaque. The segments before the guess are walked once to sum
 //! optical depths, so that it is known in each pixel from where on it is opaque. Segments behind that, in all tiles that they may touch, are on no list,
-//! and the walks of the technique take what is opaque for the scene. No frame depends on the one before.
+//! and the walks of the technique take what is opaque for the scene. All of it is found anew in each frame.
 
 mod kernels;
 mod memory;
@@ -58,7 +58,8 @@ const DENSE_ON_A_CPU: f64 = 6.0;
 /// The same where raster passes make fragments, which takes many times as long on a GPU with few raster units (H200: at 3.5 0.6).
 const DENSE_IN_RASTER: f64 = 3.0;
 
-/// Where fewer fragments are predicted, to look for what is hidden takes longer than to draw it.
+/// Where fewer fragments are predicted hair is never dense: what is done beside the walks takes as long as to draw so many (H200: 0.10 ms at 4,096 strands, whose 2.8
+/// million fragments take 0.26).
 const LEAST: f64 = 1e6;
 
 /// Frames after which it is predicted again how dense hair is.

@@ -3,8 +3,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::occlusion::{OccludedTile, tile_columns};
-import package::points::{ANYWHERE, NOWHERE, SOMEWHERE, point_of, reach_between};
-import package::screen::view;
+import package::points::{ANYWHERE, SOMEWHERE, point_of, reach_between};
 import package::strands::{end_at, is_sound_at, section, strand_at};
 
 struct SegmentList {

@@ -3,7 +3,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::occlusion::{MASS_UNIT, SLICES, occlusion, tile_columns};
-import package::points::{NOWHERE, point_of};
+import package::points::point_of;
 import package::screen::{distance_of, view};
 import package::strands::{color_of, end_at, is_sound_at, section, strand_at};
 import package::tile::TILE;
