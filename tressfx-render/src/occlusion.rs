@@ -23,7 +23,7 @@ use crate::segments::Fill;
 use crate::strands::SectionDraw;
 use crate::tiles::distances;
 use crate::views::BoundView;
-use kernels::Kernels;
+use kernels::{Hair, Kernels};
 use memory::{Memory, Room};
 
 pub(crate) use memory::Listed;
@@ -233,7 +233,7 @@ impl Occlusion {
         memory.begin(list, view, OcclusionUniform { nearest, depth, closing: CLOSING, stride: STRIDE });
         self.used = self.frame;
         let lists = memory.lists(draws);
-        kernels.find(list, view, draws, targets.depth, memory, &lists)?;
+        kernels.find(list, &Hair { view, draws, scene: targets.depth, memory, lists: &lists })?;
         Ok(Some(Occluded { depth: memory.depth, lists }))
     }
 }

@@ -1,8 +1,5 @@
 // What hair hides of itself: tiles of the screen, and depths between which their hair becomes opaque. The kernels here share it.
 
-import package::screen::view;
-import package::tile::TILE;
-
 struct OcclusionUniform {
     // Distances between which hair is expected: the nearer one, and how much farther the other one is.
     nearest: f32,
@@ -37,14 +34,6 @@ const BIT: f32 = 1024.0;
 const NEVER: f32 = 3e38;
 // A share of a nearness: more than rounding can move a fragment out of its part.
 const ROUNDING: f32 = 1e-6;
-
-fn tile_columns() -> u32 {
-    return (view.size.x + TILE - 1u) / TILE;
-}
-
-fn tile_count() -> u32 {
-    return tile_columns() * ((view.size.y + TILE - 1u) / TILE);
-}
 
 // The part in which a nearness is that is not behind the tile's last one.
 fn part_of(tile: OccludedTile, nearness: f32) -> u32 {

@@ -1,8 +1,8 @@
 // Between which depths the hair of each tile becomes opaque, by its mass. Whether it does is found out behind it, pixel by pixel. One thread a tile.
 
 import package::grid::{GROUP, thread_index};
-import package::occlusion::{MASS_UNIT, NEVER, OccludedTile, SLICES, occlusion, tile_columns, tile_count};
-import package::screen::{nearness_at, scene_nearness, view};
+import package::occlusion::{MASS_UNIT, NEVER, OccludedTile, SLICES, occlusion};
+import package::screen::{nearness_at, scene_nearness, tile_columns, tile_count, view};
 import package::tile::TILE;
 
 @group(0) @binding(6) var<storage, read> masses: array<u32>;

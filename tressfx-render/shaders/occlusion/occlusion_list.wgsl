@@ -1,9 +1,10 @@
 // The segments of a section that are not behind what is seen farthest in all tiles that they may touch. One group takes some in a row; it
 // is run before and behind `occlusion_depth`.
 
-import package::grid::{GROUP, thread_index};
-import package::occlusion::{OccludedTile, tile_columns};
+import package::grid::GROUP;
+import package::occlusion::OccludedTile;
 import package::points::{ANYWHERE, SOMEWHERE, point_of, reach_between};
+import package::screen::tile_columns;
 import package::strands::{end_at, is_sound_at, section, strand_at};
 
 struct SegmentList {

@@ -2,9 +2,9 @@
 // the strands.
 
 import package::grid::{GROUP, thread_index};
-import package::occlusion::{MASS_UNIT, SLICES, occlusion, tile_columns};
+import package::occlusion::{MASS_UNIT, SLICES, occlusion};
 import package::points::point_of;
-import package::screen::{distance_of, view};
+import package::screen::{distance_of, tile_columns, view};
 import package::strands::{color_of, end_at, is_sound_at, section, strand_at};
 import package::tile::TILE;
 

@@ -1,5 +1,6 @@
 // The screen that strands are drawn on: the view, and the depth of the opaque scene.
 
+import package::tile::TILE;
 import package::view::ViewUniform;
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -33,4 +34,12 @@ fn nearness_at(distance: f32) -> f32 {
         return 1.0 / distance;
     }
     return 1.0 - view.lens.nearness_slope * distance;
+}
+
+fn tile_columns() -> u32 {
+    return (view.size.x + TILE - 1u) / TILE;
+}
+
+fn tile_count() -> u32 {
+    return tile_columns() * ((view.size.y + TILE - 1u) / TILE);
 }

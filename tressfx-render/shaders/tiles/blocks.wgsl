@@ -1,7 +1,7 @@
 // Blocks of tiles: most hidden segments are hidden in all tiles of the few blocks that they touch.
 
+import package::screen::tile_columns;
 import package::tile::TILE;
-import package::tiles::tile_columns;
 
 // Tiles along an edge of a block.
 const BLOCK: u32 = 4u;

@@ -2,9 +2,8 @@
 // Eight lanes a tile, a part of its slices each.
 
 import package::grid::GROUP;
-import package::tiles::{
-    ALL_PARTS, BLEND_GRID, CLASSES, Queue, ROW, SLICES, STORE_GRIDS, TileInfo, ViewState, groups_of_a_tile, tile_count, tiles,
-};
+import package::screen::tile_count;
+import package::tiles::{ALL_PARTS, BLEND_GRID, CLASSES, Queue, ROW, SLICES, STORE_GRIDS, TileInfo, ViewState, groups_of_a_tile, tiles};
 
 @group(0) @binding(6) var<storage, read_write> bins: array<u32>;
 @group(0) @binding(7) var<storage, read_write> queue: Queue;

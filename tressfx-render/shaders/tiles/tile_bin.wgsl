@@ -7,10 +7,10 @@ import package::blocks::{BLOCK_EDGE, block_at, is_hidden_in};
 import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
-import package::screen::{DISTANCE_MARGIN, distance_of, view};
+import package::screen::{DISTANCE_MARGIN, distance_of, tile_columns, tile_count, view};
 import package::segments::{leads_on, ribbon_of};
 import package::tile::TILE;
-import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, slice_of, tile_columns, tile_count, tiles};
+import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, slice_of, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read> infos: array<TileInfo>;

@@ -12,7 +12,7 @@ import package::entries::{
     Painted, add, blended_share, color_at, empty, ends, entry_at, gather, none_painted, note_blended, paint, pixel_of, places_of, put_colors,
     settle_ties, start_of, ties, total, with_one_more,
 };
-import package::fragment::{Fragment, OPAQUE, depth_key, nearness_of, packed_alpha, packed_color};
+import package::fragment::{OPAQUE, depth_key, nearness_of, packed_alpha, packed_color};
 import package::front::{Front, nothing_yet, over, passes};
 import package::hidden::{FARTHEST, HairState, hidden_by};
 import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
@@ -20,13 +20,10 @@ import package::line::{Line, fragment_of_axis, fragment_on, has_ends_of, is_draw
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
 import package::ribbon::{Ribbon, slant_of};
-import package::screen::{distance_of, scene_nearness, view};
+import package::screen::{distance_of, scene_nearness, tile_columns, tile_count, view};
 import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
-import package::tiles::{
-    CLASSES, FIRST_QUARTER, IS_NEAREST, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState,
-    WaitingTiles, begin_of, groups_of_a_tile, is_cut, is_restless, tile_columns, tile_count, tiles,
-};
+import package::tiles::{CLASSES, FIRST_QUARTER, IS_NEAREST, PARTS, PARTS_OF_A_QUARTER, QUARTERS, REACHES_ON, SLICES, SharedTileInfo, TileInfo, VERTEX_MASK, ViewState, WaitingTiles, begin_of, groups_of_a_tile, is_cut, is_restless, tiles};
 import package::unit::{ENTRIES, FIRST_RATE, LAST_KEY, Unit, begin, bounds, last_key, next_unit, unit_from};
 
 @if(places)

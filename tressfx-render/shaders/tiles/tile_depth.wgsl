@@ -4,9 +4,9 @@
 
 import package::blocks::{block_of, block_word};
 import package::grid::GROUP;
-import package::screen::{scene_nearness, view};
+import package::screen::{scene_nearness, tile_columns, tile_count, view};
 import package::tile::TILE;
-import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, is_restless, tile_columns, tile_count, tiles};
+import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, is_restless, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;

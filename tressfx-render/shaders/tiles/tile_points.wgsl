@@ -5,11 +5,11 @@
 import package::joint::{ROUND, tilt_of};
 import package::points::{ANYWHERE, NOWHERE, SOMEWHERE, point_of, reach_between};
 import package::ribbon::is_sound;
-import package::screen::view;
+import package::screen::{tile_columns, view};
 import package::segments::{Vertex, pack_rest};
 import package::strands::{Strand, bend_at, colors, end_at, is_sound_at, neighbours_of, section, strand_at, tilt_between, vertex_of};
 import package::tile::TILE;
-import package::tiles::{SharedTileInfo, ViewState, tile_columns, tiles};
+import package::tiles::{SharedTileInfo, ViewState, tiles};
 
 @group(0) @binding(6) var<storage, read_write> vertices: array<vec4<u32>>;
 @group(0) @binding(7) var<storage, read_write> paints: array<vec2<u32>>;

@@ -3,7 +3,8 @@
 
 import package::blocks::{block_of, block_word};
 import package::grid::{GROUP, thread_index};
-import package::tiles::{ALLOC_GRID, COUNT_GRID, SLICES, TileInfo, ViewState, is_cut, tile_count, tiles};
+import package::screen::tile_count;
+import package::tiles::{ALLOC_GRID, COUNT_GRID, SLICES, TileInfo, ViewState, is_cut, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;

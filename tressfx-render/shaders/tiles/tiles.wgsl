@@ -1,8 +1,7 @@
 // Tiles of the screen, and slices of depth through them: what the kernels of this technique share.
 
 import package::counters::Counters;
-import package::screen::{distance_of, view};
-import package::tile::TILE;
+import package::screen::distance_of;
 
 // Slices of depth; each holds references to the segments that touch it.
 const SLICES: u32 = 64u;
@@ -154,14 +153,6 @@ fn groups_of_a_tile(count: u32) -> u32 {
 // Whether hair behind some nearness was left out, though the scene shows it.
 fn is_cut(info: TileInfo) -> bool {
     return info.farthest > info.scene;
-}
-
-fn tile_columns() -> u32 {
-    return (view.size.x + TILE - 1u) / TILE;
-}
-
-fn tile_count() -> u32 {
-    return tile_columns() * ((view.size.y + TILE - 1u) / TILE);
 }
 
 // Where the slices of a tile begin: `nearness` is that of its nearest vertex, or 0 where there is none.

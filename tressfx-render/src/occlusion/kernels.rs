@@ -30,6 +30,23 @@ type Key = (usize, BufferId, TextureId);
 /// The same with the place of its list.
 type ListKey = (Key, [u64; 2]);
 
+/// The hair in which hidden hair is looked for, and where it is kept what is found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hair<'a> {
+    pub(super) view: &'a BoundView<'a>,
+    pub(super) draws: &'a [SectionDraw<'a>],
+    /// Depth of the opaque scene.
+    pub(super) scene: TextureId,
+    pub(super) memory: &'a Memory,
+    pub(super) lists: &'a [Listed],
+}
+
+impl Hair<'_> {
+    fn key(&self, draw: &SectionDraw) -> Key {
+        (self.view.index, draw.strands.colors, self.scene)
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct Kernels {
     mass: Pass<Key>,
@@ -75,59 +92,42 @@ impl Kernels {
     }
 
     /// Finds what is seen farthest in each pixel, and lists the segments that are not behind it.
-    pub(super) fn find(
-        &mut self,
-        list: &mut PassList,
-        view: &BoundView,
-        draws: &[SectionDraw],
-        scene: TextureId,
-        memory: &Memory,
-        lists: &[Listed],
-    ) -> Result<()> {
+    pub(super) fn find(&mut self, list: &mut PassList, of: &Hair) -> Result<()> {
+        let &Hair { view, draws, scene, memory, lists } = of;
         let shared = [("view", view.uniform), ("occlusion", memory.uniforms.binding(view.index))];
         let [tiles, opticals] = [("tiles", memory.tiles.into()), ("opticals", memory.opticals.into())];
         let masses = ("masses", memory.masses.into());
         let depth: (&str, Binding) = ("scene_depth", scene.into());
         for draw in draws {
-            let key = (view.index, draw.strands.colors, scene);
             let [strands @ .., _] = draw.strands.bindings(view, scene);
             let lod = draw.lod_uniform();
             let grid = Grid::for_threads(lod.strands.div_ceil(STRIDE) * (lod.vertices - 1), GROUP);
-            self.mass.record(list, key, Groups::Grid(grid), &[&strands[..], &[shared[1], masses]].concat())?;
+            self.mass.record(list, of.key(draw), Groups::Grid(grid), &[&strands[..], &[shared[1], masses]].concat())?;
         }
         let all = Groups::Grid(Grid::for_threads(tile_count(view.size), GROUP));
         self.guess.record(list, (view.index, scene), all, &[shared[0], shared[1], masses, tiles, depth])?;
-        self.list(list, view, draws, scene, memory, lists)?;
+        self.list(list, of)?;
         for (draw, listed) in draws.iter().zip(lists) {
-            let key = ((view.index, draw.strands.colors, scene), listed.place());
             let strands = draw.strands.bindings(view, scene);
             let own = [shared[1], tiles, opticals, listed.binding()];
             let (buffer, offset) = listed.groups;
+            let key = (of.key(draw), listed.place());
             self.sums.record(list, key, Groups::Indirect { buffer, offset }, &[&strands[..], &own].concat())?;
         }
         let own = [shared[0], shared[1], tiles, opticals, depth, ("occluded", memory.depth.into())];
         self.depth.record(list, (view.index, scene), Groups::Grid(view.region.grid()), &own)?;
-        self.list(list, view, draws, scene, memory, lists)
+        self.list(list, of)
     }
 
     /// Lists the segments that are not behind the farthest of their tiles.
-    fn list(
-        &mut self,
-        list: &mut PassList,
-        view: &BoundView,
-        draws: &[SectionDraw],
-        scene: TextureId,
-        memory: &Memory,
-        lists: &[Listed],
-    ) -> Result<()> {
-        for (draw, listed) in draws.iter().zip(lists) {
-            memory.empty(list, listed);
-            let key = ((view.index, draw.strands.colors, scene), listed.place());
-            let [view_of, section, positions, _, thickness, _] = draw.strands.bindings(view, scene);
-            let own = [("tiles", memory.tiles.into()), ("list", listed.segments), ("grid", listed.grid)];
+    fn list(&mut self, list: &mut PassList, of: &Hair) -> Result<()> {
+        for (draw, listed) in of.draws.iter().zip(of.lists) {
+            of.memory.empty(list, listed);
+            let [view, section, positions, _, thickness, _] = draw.strands.bindings(of.view, of.scene);
+            let own = [("tiles", of.memory.tiles.into()), ("list", listed.segments), ("grid", listed.grid)];
             let grid = Grid::for_threads(draw.segments(), SEGMENTS_OF_A_GROUP);
-            let all = [&[view_of, section, positions, thickness][..], &own].concat();
-            self.list.record(list, key, Groups::Grid(grid), &all)?;
+            let all = [&[view, section, positions, thickness][..], &own].concat();
+            self.list.record(list, (of.key(draw), listed.place()), Groups::Grid(grid), &all)?;
         }
         Ok(())
     }
