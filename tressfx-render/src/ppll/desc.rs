@@ -10,7 +10,7 @@ use crate::segments::Fill;
 #[non_exhaustive]
 pub struct PpllDesc {
     /// How many of the nearest fragments of a pixel are put in order exactly; the rest is blended without order. In
-    /// [`K_RANGE`].
+    /// [`K_RANGE`](crate::K_RANGE).
     pub k: u32,
     /// What is seen of the rest.
     pub tail: Tail,
