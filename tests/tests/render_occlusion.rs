@@ -289,10 +289,10 @@ fn sections_without_room_on_the_lists_are_drawn_whole_until_there_is() {
 
 #[test]
 fn hidden_hair_is_left_out_of_dense_hair_by_default() {
-    let groom = &dense()[0];
+    let groom = &Groom::wavy(12_000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)));
     let fragments = [None, Some(true), Some(false)].map(|skips| {
         let technique = PpllDesc::default().skips_hidden(skips);
-        let larger = |setup: &mut Setup| (setup.technique, setup.size) = (technique.into(), [360, 260]);
+        let larger = |setup: &mut Setup| (setup.technique, setup.size) = (technique.into(), [250, 180]);
         Some(screen(larger)?.hair(&[groom]).counters.fragments)
     });
     let [Some(by_default), Some(some), Some(all)] = fragments else { return };

@@ -52,9 +52,6 @@ const STRIDE: u32 = 8;
 /// take 1.1 times as long, at 55 0.36).
 const DENSE: f64 = 40.0;
 
-/// The same on a CPU, which takes longer for a fragment (lavapipe: at 3.5 as long, at 14 0.3).
-const DENSE_ON_A_CPU: f64 = 6.0;
-
 /// The same where raster passes make fragments, which takes many times as long on a GPU with few raster units (H200: at 3.5 0.6).
 const DENSE_IN_RASTER: f64 = 3.0;
 
@@ -109,9 +106,8 @@ impl Occlusion {
         output: Output,
     ) -> Result<Self> {
         let dense = match fill {
-            Fill::Raster => DENSE_IN_RASTER,
-            Fill::Compute if backend.caps().is_cpu => DENSE_ON_A_CPU,
-            Fill::Compute => DENSE,
+            Fill::Raster if !backend.caps().is_cpu => DENSE_IN_RASTER,
+            _ => DENSE,
         };
         let kernels = if wanted == Some(true) { Some(Kernels::new(backend, output)?) } else { None };
         let (memory, room, alignment) = (None, Room::default(), backend.caps().binding_alignment);
