@@ -71,6 +71,35 @@ fn a_renderer_of_each_technique() {
 }
 
 #[test]
+fn what_looks_for_hidden_hair() {
+    let techniques: [Technique; 3] = [
+        PpllDesc::default().skips_hidden(true).into(),
+        PpllDesc::default().skips_hidden(true).max_node_bytes(16 * 8).into(),
+        ShortCutDesc::default().skips_hidden(true).into(),
+    ];
+    for technique in techniques {
+        let mut backend = backend();
+        let desc = RenderDesc::new([64, 48], Format::Rgba16F).technique(technique);
+        let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+        let strands = random_strands(8, 8, 1, 1);
+        let buffers = StrandBuffers::new(&mut backend, StrandShape::of(&strands), Vec3::ZERO).unwrap();
+        let section = ShadedStrands::new(&mut backend, buffers, StrandInfo::new(&strands)).unwrap();
+        let view = Camera::around(&[Vec3::NEG_ONE, Vec3::ONE], [64, 48]).view([64, 48]).unwrap();
+        let material = Material::default();
+        let draws = [SectionDraw::new(&section, &material, Pose::IDENTITY)];
+        let (before, bytes) = (backend.living(), renderer.technique_bytes());
+        let ((), failures) = backend.fail_everywhere(|backend| renderer.grow_to_predicted(backend, &view, &draws));
+        assert!(failures > 6, "{failures} creations");
+        assert_eq!(backend.living().1 - before.1, renderer.technique_bytes() - bytes, "all that was made is there");
+        assert!(backend.living().0 > before.0 + 6, "and not freed again: {:?}, {before:?}", backend.living());
+        section.destroy(&mut backend);
+        renderer.destroy(&mut backend);
+        buffers.destroy(&mut backend);
+        assert_eq!(backend.living(), (0, 0));
+    }
+}
+
+#[test]
 fn a_renderer_its_size_and_its_sections() {
     let mut backend = backend();
     let desc = RenderDesc::new([64, 48], Format::Rgba16F);

@@ -73,6 +73,13 @@ fn pixels(view: &View, draws: &[SectionDraw]) -> f64 {
     (u64::from(TILE * TILE) * predict::tiles(view, draws)) as f64
 }
 
+/// What was made and is not in use yet: if something else fails, it is forgotten.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    kernels: Option<Kernels>,
+    memory: Memory,
+}
+
 /// What finds hidden hair.
 #[derive(Debug)]
 pub(crate) struct Occlusion {
@@ -149,26 +156,35 @@ impl Occlusion {
         self.is_dense = self.are_dense(fragments, view, draws);
     }
 
-    /// Makes what it takes to look for hidden hair, where that is wanted. Returns whether anything is new.
-    pub(crate) fn prepare(&mut self, backend: &mut dyn Backend) -> Result<bool> {
+    /// Gives back memory that was not in use for a long time.
+    pub(crate) fn release_unused(&mut self, backend: &mut dyn Backend) {
         if self.memory.is_some() && self.frame - self.used > UNUSED_FRAMES {
             self.release(backend);
             self.room = Room::default();
         }
+    }
+
+    /// Makes what it takes to look for hidden hair, where that is wanted and not there, and changes nothing yet.
+    pub(crate) fn prepare(&self, backend: &mut dyn Backend) -> Result<Option<Prepared>> {
         let has_work = self.is_wanted() && self.room != Room::default();
         if !has_work || self.is_ready() || memory::check(backend, self.size, self.room).is_err() {
-            return Ok(false);
+            return Ok(None);
         }
-        if self.kernels.is_none() {
-            self.kernels = Some(Kernels::new(backend, self.output)?);
-        }
+        let kernels = if self.kernels.is_none() { Some(Kernels::new(backend, self.output)?) } else { None };
         let memory = Memory::new(backend, self.size, self.output.views, self.alignment, self.room)?;
-        if let Some(old) = self.memory.replace(memory) {
+        Ok(Some(Prepared { kernels, memory }))
+    }
+
+    /// Uses what was prepared.
+    pub(crate) fn turn_on(&mut self, backend: &mut dyn Backend, prepared: Prepared) {
+        if let Some(kernels) = prepared.kernels {
+            self.kernels = Some(kernels);
+        }
+        if let Some(old) = self.memory.replace(prepared.memory) {
             old.destroy(backend);
         }
         self.used = self.frame;
         self.forget_bindings();
-        Ok(true)
     }
 
     /// Gives back the memory.

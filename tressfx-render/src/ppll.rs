@@ -17,13 +17,13 @@ use tressfx_core::view::View;
 
 use crate::composite::Composite;
 use crate::counters::Counters;
-use crate::occlusion::Occlusion;
+use crate::occlusion::{self, Occlusion};
 use crate::output::Output;
 use crate::places::check_places;
 use crate::predict;
 use crate::renderer::{Targets, with_headroom};
 use crate::resolved::{Resolved, check_pixels, pixels, tile_count};
-use crate::segments::Segments;
+use crate::segments::{Segments, Walk};
 use crate::shaders::{FRONT, GROUP, PIXELS, with_shared};
 use crate::strands::SectionDraw;
 use crate::technique::{Technique, TechniqueInstance, another_technique, check_k};
@@ -55,6 +55,14 @@ const LIBRARY: &[Module] = &with_shared::<7, 25>([
     ("sink", include_str!("../shaders/ppll/sink.wgsl")),
     ("weight", include_str!("../shaders/ppll/weight.wgsl")),
 ]);
+
+/// What looks for hidden hair, made and not in use yet.
+#[derive(Debug, Default)]
+struct Hiding {
+    occlusion: Option<occlusion::Prepared>,
+    fill: Option<Walk>,
+    bounded: [Option<Walk>; 2],
+}
 
 /// Lists of fragments at work.
 #[derive(Debug)]
@@ -97,7 +105,8 @@ impl Ppll {
             desc: *desc,
             size,
             output,
-            fill: fill::pass(backend, desc, false, output)?,
+            fill: fill::pass(backend, desc, false, output)?
+                .with_lists(backend, desc.looks_for_hidden() == Some(true))?,
             resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), output))?,
             composite: Composite::new(backend, output)?,
             pool: NodePool::new(backend, size, desc, output.views)?,
@@ -113,16 +122,14 @@ impl Ppll {
             let prepared = made.prepare(backend, desc)?;
             made.bound(backend, desc, prepared);
         }
-        if made.occlusion.is_wanted() {
-            made.prepare_lists(backend)?;
-        }
         Ok(made)
     }
 
     /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
     fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
         let kernel = self.resolve.prepare(backend, desc.variant(true, self.output))?;
-        Ok((kernel, self.bounded.prepare(backend, self.size, desc, self.output)?))
+        let walks_lists = self.occlusion.is_wanted();
+        Ok((kernel, self.bounded.prepare(backend, self.size, desc, self.output, walks_lists)?))
     }
 
     /// Does so.
@@ -210,18 +217,27 @@ impl Ppll {
         Ok(())
     }
 
-    /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
-    fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        if self.occlusion.prepare(backend)? {
-            self.forget_bindings();
+    /// Makes what it takes to look for hidden hair, where that is wanted and the device can, and changes nothing yet.
+    fn prepare_occlusion(&self, backend: &mut dyn Backend) -> Result<Hiding> {
+        let occlusion = self.occlusion.prepare(backend)?;
+        if occlusion.is_none() && !self.occlusion.is_ready() {
+            return Ok(Hiding::default());
         }
-        if self.occlusion.is_ready() { self.prepare_lists(backend) } else { Ok(()) }
+        let (fill, bounded) = (self.fill.prepare_lists(backend)?, self.bounded.prepare_lists(backend)?);
+        Ok(Hiding { occlusion, fill, bounded })
     }
 
-    /// Makes what it takes to walk lists of segments.
-    fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        self.fill.prepare_lists(backend)?;
-        self.bounded.prepare_lists(backend)
+    /// Uses that. Returns whether anything is new.
+    fn hide(&mut self, backend: &mut dyn Backend, hiding: Hiding) -> bool {
+        let Hiding { occlusion, fill, bounded } = hiding;
+        let is_new = occlusion.is_some() || fill.is_some() || bounded.iter().any(Option::is_some);
+        self.fill.walk_lists(fill);
+        self.bounded.walk_lists(bounded);
+        if let Some(prepared) = occlusion {
+            self.occlusion.turn_on(backend, prepared);
+            self.forget_bindings();
+        }
+        is_new
     }
 
     /// Gives back all nodes, until more are reserved.
@@ -260,7 +276,8 @@ impl TechniqueInstance for Ppll {
         let pool = NodePool::new(backend, size, &self.desc, self.output.views)?;
         let resolved = Resolved::new(backend, size, self.output)?;
         let bounded = &self.bounded;
-        let prepare = || bounded.prepare(backend, size, &self.desc, self.output);
+        let walks_lists = self.occlusion.is_wanted();
+        let prepare = || bounded.prepare(backend, size, &self.desc, self.output, walks_lists);
         if let Some(prepared) = bounded.is_on().then(prepare).transpose()? {
             self.bounded.turn_on(backend, prepared);
         }
@@ -275,13 +292,20 @@ impl TechniqueInstance for Ppll {
     fn make_room(&mut self, backend: &mut dyn Backend, view: &View, draws: &[SectionDraw]) -> Result<()> {
         let fragments = predict::fragments(view, draws);
         self.occlusion.expect(view, draws, fragments);
+        // Nothing is in use before all is made.
+        let hiding = self.prepare_occlusion(backend)?;
         self.reserve(backend, fragments as u64)?;
-        self.prepare_occlusion(backend)
+        self.hide(backend, hiding);
+        Ok(())
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
         let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
-        self.prepare_occlusion(backend)?;
+        self.occlusion.release_unused(backend);
+        let hiding = self.prepare_occlusion(backend)?;
+        if self.hide(backend, hiding) {
+            return Ok(true);
+        }
         let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
         let settled = self.usage.measured(needed);
         self.grow(backend, counters)?;

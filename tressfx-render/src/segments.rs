@@ -77,7 +77,7 @@ impl Recipe {
 
 /// A pipeline, and its bindings by view, section, scene and the place of its list.
 #[derive(Debug)]
-struct Walk {
+pub(crate) struct Walk {
     pipeline: Pipeline,
     bound: Bound<(usize, BufferId, TextureId, Option<[u64; 2]>)>,
 }
@@ -104,12 +104,24 @@ impl Segments {
         Ok(Self { all: recipe.make(backend, false)?, listed: None, recipe })
     }
 
-    /// Makes what it takes to walk lists.
-    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        if self.listed.is_none() {
+    /// The same, with what it takes to walk lists where those will be walked.
+    pub(crate) fn with_lists(mut self, backend: &mut dyn Backend, are_walked: bool) -> Result<Self> {
+        if are_walked {
             self.listed = Some(self.recipe.make(backend, true)?);
         }
-        Ok(())
+        Ok(self)
+    }
+
+    /// Makes what it takes to walk lists, unless it is there, and changes nothing yet.
+    pub(crate) fn prepare_lists(&self, backend: &mut dyn Backend) -> Result<Option<Walk>> {
+        if self.listed.is_none() { self.recipe.make(backend, true).map(Some) } else { Ok(None) }
+    }
+
+    /// Walks lists with what was prepared.
+    pub(crate) fn walk_lists(&mut self, prepared: Option<Walk>) {
+        if prepared.is_some() {
+            self.listed = prepared;
+        }
     }
 
     fn walks(&mut self) -> impl Iterator<Item = &mut Walk> {

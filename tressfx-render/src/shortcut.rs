@@ -118,35 +118,29 @@ impl ShortCut {
         check_k("hair.render.shortcut", desc.k, &ShortCutDesc::K_RANGE)?;
         check(backend, desc, size, output)?;
         let k = output.walk().constant("K", desc.k);
-        let mut made = Self {
+        let own = desc.specialization(output);
+        let depths = Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?;
+        let colors = Segments::new(backend, desc.fill, colors::SHADERS, &own, output.color)?;
+        Ok(Self {
             desc: *desc,
             output,
-            depths: Segments::new(backend, desc.fill, depths::SHADERS, &k, output.color)?,
-            colors: Segments::new(backend, desc.fill, colors::SHADERS, &desc.specialization(output), output.color)?,
+            depths: depths.with_lists(backend, desc.skips_hidden)?,
+            colors: colors.with_lists(backend, desc.skips_hidden)?,
             resolve: resolve::Resolve::new(backend, desc, output)?,
             occlusion: Occlusion::new(backend, Some(desc.skips_hidden), desc.fill, size, output)?,
             composite: Composite::new(backend, output)?,
             memory: Memory::new(backend, size, desc, output)?,
-        };
-        if desc.skips_hidden {
-            made.prepare_lists(backend)?;
-        }
-        Ok(made)
+        })
     }
 
     /// Makes what it takes to look for hidden hair, where that is wanted and the device can.
     fn prepare_occlusion(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        if self.occlusion.prepare(backend)? {
+        if let Some(prepared) = self.occlusion.prepare(backend)? {
+            self.occlusion.turn_on(backend, prepared);
             self.depths.forget_bindings();
             self.colors.forget_bindings();
         }
         Ok(())
-    }
-
-    /// Makes what it takes to walk lists of segments.
-    fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        self.depths.prepare_lists(backend)?;
-        self.colors.prepare_lists(backend)
     }
 
     #[cfg(test)]
@@ -176,6 +170,7 @@ impl TechniqueInstance for ShortCut {
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, _: &Counters) -> Result<bool> {
+        self.occlusion.release_unused(backend);
         self.prepare_occlusion(backend)?;
         Ok(false)
     }

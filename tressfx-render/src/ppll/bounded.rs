@@ -14,7 +14,7 @@ use super::{PpllDesc, fill, nearest};
 use crate::output::Output;
 use crate::region::Region;
 use crate::resolved::{pixels, storage};
-use crate::segments::Segments;
+use crate::segments::{Segments, Walk};
 
 /// Bytes of the sums and of the head of a pixel, and of the key of a depth where depth is written: see `rest.wgsl`.
 fn rest_bytes(output: Output) -> u64 {
@@ -90,23 +90,29 @@ impl Bounded {
         size: [u32; 2],
         desc: &PpllDesc,
         output: Output,
+        walks_lists: bool,
     ) -> Result<Prepared> {
         check(backend, size, desc.asked(), output)?;
         let make = |backend: &mut dyn Backend| {
-            let fill = fill::pass(backend, desc, true, output)?;
-            Ok(Kernels { nearest: nearest::pass(backend, output)?, fill })
+            let fill = fill::pass(backend, desc, true, output)?.with_lists(backend, walks_lists)?;
+            Ok(Kernels { nearest: nearest::pass(backend, output)?.with_lists(backend, walks_lists)?, fill })
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };
         Ok(Prepared { kernels, memory: Memory::new(backend, size, desc.asked(), output)? })
     }
 
-    /// Makes what it takes to walk lists of segments, once there are kernels.
-    pub(crate) fn prepare_lists(&mut self, backend: &mut dyn Backend) -> Result<()> {
+    /// Makes what it takes to walk lists of segments, where there are kernels without it, and changes nothing yet.
+    pub(crate) fn prepare_lists(&self, backend: &mut dyn Backend) -> Result<[Option<Walk>; 2]> {
+        let Some(kernels) = &self.kernels else { return Ok([None, None]) };
+        Ok([kernels.nearest.prepare_lists(backend)?, kernels.fill.prepare_lists(backend)?])
+    }
+
+    /// Walks lists with what was prepared.
+    pub(crate) fn walk_lists(&mut self, [nearest, fill]: [Option<Walk>; 2]) {
         if let Some(kernels) = &mut self.kernels {
-            kernels.nearest.prepare_lists(backend)?;
-            kernels.fill.prepare_lists(backend)?;
+            kernels.nearest.walk_lists(nearest);
+            kernels.fill.walk_lists(fill);
         }
-        Ok(())
     }
 
     /// Bounds lists with what was prepared.
