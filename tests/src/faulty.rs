@@ -169,6 +169,11 @@ impl<B: Backend> Faulty<B> {
         }
     }
 
+    /// A backend without a fault that claims other caps.
+    pub fn claiming(inner: B, caps: Caps) -> Self {
+        Self { caps, ..Self::new(inner, Fault::None) }
+    }
+
     fn format(&self, format: Format) -> Format {
         match (self.fault, format) {
             (Fault::SrgbLinear, Format::Rgba8Srgb) => Format::Rgba8,

@@ -3,11 +3,13 @@
 mod support;
 
 use glam::{DVec3, DVec4, Vec3};
+use tressfx_conformance::faulty::Faulty;
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
+use tressfx_core::backend::Backend;
 use tressfx_render::{Counters, Fill, PpllDesc, Tail, reference};
 
 use support::hair::material;
-use support::screen;
+use support::{gpu, screen};
 
 fn lists(desc: PpllDesc) -> impl FnOnce(&mut Setup) {
     move |setup| setup.technique = desc.into()
@@ -71,6 +73,44 @@ fn a_pool_without_room_for_all_draws_what_a_large_one_draws() {
         let again = measured.renderer.grow_to_measured(&mut *measured.backend, &second.counters).unwrap();
         assert!(again || second.bytes == expected.bytes, "{:?}", second.counters);
         assert!(measured.hair(&[&groom]).bytes == expected.bytes, "{fill:?}");
+    }
+}
+
+/// A screen on a device whose bindings hold so many bytes.
+fn narrow_screen(bytes: u64, change: impl FnOnce(&mut Setup)) -> Option<Screen> {
+    let backend = gpu()?;
+    let mut caps = backend.caps().clone();
+    caps.max_storage_binding_bytes = bytes;
+    Some(Screen::new(Box::new(Faulty::claiming(*backend, caps)), change))
+}
+
+#[test]
+fn nodes_that_one_binding_cannot_hold_lie_in_two() {
+    let groom = Groom::wavy(1500, 16, 3, material());
+    let lists = PpllDesc::default();
+    let of_tails = [lists, lists.tail(Tail::Weighted), lists.k(0), lists.places(4), lists.skips_hidden(true)];
+    for desc in of_tails.into_iter().flat_map(|desc| [desc, desc.fill(Fill::Raster)]) {
+        for has_output in [false, true] {
+            let setup = |setup: &mut Setup| (setup.technique, setup.hair_output) = (desc.into(), has_output);
+            let Some(mut roomy) = screen(setup) else { return };
+            let expected = roomy.hair(&[&groom]);
+            let fragments = u64::from(expected.counters.fragments);
+            for (share, is_bounded) in [(0.6, false), (0.3, true)] {
+                let of_one = (fragments as f64 * share) as u64;
+                let node_bytes = if desc.places > 1 { 20 } else { 16 };
+                let Some(mut narrow) = narrow_screen(node_bytes * of_one, setup) else { return };
+                // It is not predicted how much is hidden: then lists may be bounded at first.
+                narrow.may_grow = false;
+                let mut picture = narrow.hair(&[&groom]);
+                while narrow.renderer.grow_to_measured(&mut *narrow.backend, &picture.counters).unwrap() {
+                    picture = narrow.hair(&[&groom]);
+                }
+                let capacity = u64::from(narrow.renderer.capacity());
+                assert_eq!(capacity > of_one, !is_bounded, "{desc:?}: room for {capacity}, {of_one} a binding");
+                assert!(picture.bytes == expected.bytes, "{desc:?}, depth {has_output}: {:?}", picture.counters);
+                assert_eq!((picture.counters.dropped, picture.counters.merged), (0, 0));
+            }
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use tressfx_core::null::NullBackend;
 use tressfx_core::pass::PassList;
 use tressfx_core::strand_buffers::StrandBuffers;
 use tressfx_core::view::{Camera, Pose};
-use tressfx_render::{HairRenderer, Lights, RenderDesc, SectionDraw, ShadedStrands, Targets, ViewDraw};
+use tressfx_render::{HairRenderer, Lights, PpllDesc, RenderDesc, SectionDraw, ShadedStrands, Targets, ViewDraw};
 
 use support::hair::material;
 use support::screen;
@@ -83,10 +83,19 @@ fn the_caller_and_the_device_limit_the_pool() {
     assert_eq!(screen.renderer.capacity(), 7000);
     let mut backend = NullBackend::default();
     let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
-    let most = Caps::webgpu_default().max_storage_binding_bytes / 16;
+    // Two bindings of 128 MiB hold the default budget.
+    let most = 2 * Caps::webgpu_default().max_storage_binding_bytes / 16;
+    assert_eq!(16 * most, PpllDesc::default().max_node_bytes);
     let many = tressfx_render::Counters { wanted: most as u32, ..huge };
     renderer.grow_to_measured(&mut backend, &many).unwrap();
     assert_eq!(u64::from(renderer.capacity()), most);
+    // Kernels with two buffers of nodes have eight in all.
+    let mut caps = Caps::webgpu_default();
+    caps.max_storage_buffers_per_stage = 7;
+    let mut backend = NullBackend::new(caps);
+    let mut renderer = HairRenderer::new(&mut backend, &RenderDesc::new([64, 64], Format::Rgba16F)).unwrap();
+    renderer.grow_to_measured(&mut backend, &many).unwrap();
+    assert_eq!(u64::from(renderer.capacity()), most / 2);
 }
 
 #[test]

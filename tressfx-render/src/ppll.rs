@@ -4,6 +4,7 @@ mod bounded;
 mod desc;
 mod fill;
 mod nearest;
+mod nodes;
 mod pool;
 mod resolve;
 mod tail;
@@ -101,15 +102,16 @@ impl Ppll {
             return Err(Error::rule(LABEL, "hidden hair is not known where a pixel has several places".to_owned()));
         }
         check(backend, size, output)?;
+        let pool = NodePool::new(backend, size, desc, output.views)?;
         let mut made = Self {
             desc: *desc,
             size,
             output,
-            fill: fill::pass(backend, desc, false, output)?
+            fill: fill::pass(backend, desc, [false, pool.limits.has_more(false)], output)?
                 .with_lists(backend, desc.looks_for_hidden() == Some(true))?,
-            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), output))?,
+            resolve: Resolve::new(backend, desc.variant(desc.cap.is_some(), &pool.limits, output))?,
             composite: Composite::new(backend, output)?,
-            pool: NodePool::new(backend, size, desc, output.views)?,
+            pool,
             bounded: Bounded::default(),
             occlusion: Occlusion::new(backend, desc.looks_for_hidden(), desc.fill, size, output)?,
             kept: 0,
@@ -127,14 +129,14 @@ impl Ppll {
 
     /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
     fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
-        let kernel = self.resolve.prepare(backend, desc.variant(true, self.output))?;
+        let kernel = self.resolve.prepare(backend, desc.variant(true, &self.pool.limits, self.output))?;
         let walks_lists = self.occlusion.is_wanted();
         Ok((kernel, self.bounded.prepare(backend, self.size, desc, self.output, walks_lists)?))
     }
 
     /// Does so.
     fn bound(&mut self, backend: &mut dyn Backend, desc: &PpllDesc, (kernel, prepared): (Option<Kernel>, Prepared)) {
-        self.resolve.change(desc.variant(true, self.output), kernel);
+        self.resolve.change(desc.variant(true, &self.pool.limits, self.output), kernel);
         self.bounded.turn_on(backend, prepared);
         self.kept = desc.asked();
         self.forget_bindings();
@@ -148,14 +150,15 @@ impl Ppll {
     /// Makes room for what a view has needed. Where even the nearest have too little, fewer of a pixel are kept: which of them find
     /// room would depend on the order in which they come.
     fn grow(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<()> {
-        if counters.wanted <= self.pool.capacity {
+        let was_bounded = self.bounded.is_on();
+        if counters.wanted <= self.pool.capacity(was_bounded) {
             return Ok(());
         }
-        let was_bounded = self.bounded.is_on();
         self.reserve(backend, counters.wanted.into())?;
         self.unproven = None;
-        if was_bounded && counters.wanted > self.pool.largest {
-            let fits = self.pool.largest / counters.pixels_with_hair.max(1);
+        let largest = self.pool.limits.largest(was_bounded);
+        if was_bounded && counters.wanted > largest {
+            let fits = largest / counters.pixels_with_hair.max(1);
             self.kept = fits.min(self.kept.saturating_sub(1));
         }
         Ok(())
@@ -167,11 +170,11 @@ impl Ppll {
         if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
             return Ok(false);
         }
-        let kernel = self.resolve.prepare(backend, self.desc.variant(false, self.output))?;
-        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments))? {
+        let kernel = self.resolve.prepare(backend, self.desc.variant(false, &self.pool.limits, self.output))?;
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments), false)? {
             self.pool.replace(backend, nodes);
         }
-        self.resolve.change(self.desc.variant(false, self.output), kernel);
+        self.resolve.change(self.desc.variant(false, &self.pool.limits, self.output), kernel);
         self.bounded.turn_off(backend);
         self.forget_bindings();
         Ok(true)
@@ -182,13 +185,14 @@ impl Ppll {
         if self.unbound(backend, fragments)? {
             return Ok(());
         }
-        let needed = if self.bounded.is_on() { nodes } else { fragments };
-        if let Some(nodes) = self.pool.prepare_smaller(backend, needed)? {
+        let is_bounded = self.bounded.is_on();
+        let needed = if is_bounded { nodes } else { fragments };
+        if let Some(nodes) = self.pool.prepare_smaller(backend, needed, is_bounded)? {
             self.pool.replace(backend, nodes);
             self.forget_bindings();
         }
-        let fits = u64::from(self.pool.largest) / with_headroom(pixels).max(1);
-        if self.bounded.is_on() && fits > u64::from(self.kept) {
+        let fits = u64::from(self.pool.limits.largest(is_bounded)) / with_headroom(pixels).max(1);
+        if is_bounded && fits > u64::from(self.kept) {
             self.kept = fits.min(u64::from(self.bounded.asked())) as u32;
         }
         Ok(())
@@ -196,16 +200,18 @@ impl Ppll {
 
     /// Fragments up to which lists hold all again where they were bounded.
     pub(crate) fn most_unbounded(&self) -> f64 {
-        f64::from(self.pool.largest) / SPARE
+        f64::from(self.pool.limits.largest(false)) / SPARE
     }
 
     /// Makes room for so many fragments and some more; for more than lists may hold in bounded ones.
     pub(crate) fn reserve(&mut self, backend: &mut dyn Backend, fragments: u64) -> Result<()> {
         let desc = self.desc;
-        let bounds = !self.bounded.is_on() && fragments > u64::from(self.pool.largest) && self.can_bound(backend);
+        let largest = self.pool.limits.largest(false).into();
+        let bounds = !self.bounded.is_on() && fragments > largest && self.can_bound(backend);
         let prepared = if bounds { Some(self.prepare(backend, &desc)?) } else { None };
-        let most = if bounds || self.bounded.is_on() { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
-        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most))? {
+        let is_bounded = bounds || self.bounded.is_on();
+        let most = if is_bounded { u64::from(desc.asked()) * pixels(self.size) } else { u64::MAX };
+        if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments).min(most), is_bounded)? {
             self.pool.replace(backend, nodes);
         }
         if let Some(prepared) = prepared {
@@ -242,7 +248,7 @@ impl Ppll {
 
     /// Gives back all nodes, until more are reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        let variant = self.desc.variant(self.desc.cap.is_some(), self.output);
+        let variant = self.desc.variant(self.desc.cap.is_some(), &self.pool.limits, self.output);
         let kernel = self.resolve.prepare(backend, variant)?;
         if let Some(nodes) = self.pool.prepare_idle(backend)? {
             self.pool.replace(backend, nodes);
@@ -300,7 +306,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn measured(&mut self, backend: &mut dyn Backend, counters: &Counters) -> Result<bool> {
-        let before = (self.pool.capacity, self.bounded.is_on(), self.kept);
+        let before = (self.capacity(), self.bounded.is_on(), self.kept);
         self.occlusion.release_unused(backend);
         let hiding = self.prepare_occlusion(backend)?;
         if self.hide(backend, hiding) {
@@ -309,7 +315,7 @@ impl TechniqueInstance for Ppll {
         let needed = [counters.fragments, counters.wanted, counters.pixels_with_hair].map(u64::from);
         let settled = self.usage.measured(needed);
         self.grow(backend, counters)?;
-        if (self.pool.capacity, self.bounded.is_on(), self.kept) != before {
+        if (self.capacity(), self.bounded.is_on(), self.kept) != before {
             return Ok(true);
         }
         // Each of these replaces something once all is made that it needs, so only one of them comes at a time.
@@ -335,8 +341,8 @@ impl TechniqueInstance for Ppll {
         let was_capped = self.desc.cap.is_some();
         let stays = self.bounded.is_on() && (desc.cap.is_some() || !was_capped);
         if stays && self.bounded.asked() == desc.asked() || !stays && desc.cap.is_none() {
-            let kernel = self.resolve.prepare(backend, desc.variant(stays, self.output))?;
-            self.resolve.change(desc.variant(stays, self.output), kernel);
+            let kernel = self.resolve.prepare(backend, desc.variant(stays, &self.pool.limits, self.output))?;
+            self.resolve.change(desc.variant(stays, &self.pool.limits, self.output), kernel);
             if !stays {
                 self.bounded.turn_off(backend);
             }
@@ -349,7 +355,7 @@ impl TechniqueInstance for Ppll {
     }
 
     fn capacity(&self) -> u32 {
-        self.pool.capacity
+        self.pool.capacity(self.bounded.is_on())
     }
 
     fn bytes(&self) -> u64 {
@@ -370,7 +376,8 @@ impl TechniqueInstance for Ppll {
         self.usage.begin_frame();
         self.views = views.max(1);
         let groups: u64 = draws.iter().map(|draw| groups(draw)).sum();
-        self.pool.upload(list, groups, self.kept, &self.desc, tail::unlit(draws));
+        let kept = self.bounded.is_on().then_some(self.kept);
+        self.pool.upload(list, groups, kept, &self.desc, tail::unlit(draws));
     }
 
     fn hairy(&self) -> &Resolved {
@@ -381,7 +388,7 @@ impl TechniqueInstance for Ppll {
         self.resolved.clear(list);
         let occluded = self.occlusion.passes(list, view, draws, targets)?;
         let occluded = occluded.as_ref();
-        let own = self.pool.bindings(view);
+        let own = self.pool.bindings(view.index, self.bounded.is_on());
         match self.bounded.passes() {
             None => {
                 view.region.clear(list, self.pool.heads, HEAD_BYTES);

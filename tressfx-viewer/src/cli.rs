@@ -282,6 +282,9 @@ pub(crate) struct Shaders {
     /// Write the kernels for a device that is a CPU: some drivers end loops that run on, and their kernels end before
     #[arg(long)]
     pub(crate) for_cpu: bool,
+    /// Write the kernels for the least that WebGPU promises, bindings of 128 MiB: lists of fragments have two buffers of nodes
+    #[arg(long)]
+    pub(crate) for_least_limits: bool,
 }
 
 impl Shaders {

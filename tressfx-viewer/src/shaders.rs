@@ -123,10 +123,10 @@ pub(crate) fn run(args: &cli::Shaders) -> Result<()> {
 fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let groom = Groom::load(std::slice::from_ref(&args.groom), args.follow)?;
     let params = Params::read(args.params.as_deref(), 1)?;
-    // What a device can hold does not matter where nothing runs.
-    let most = u64::MAX;
     let mut caps = Caps::webgpu_default();
-    (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (most, most);
+    if !args.for_least_limits {
+        (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (u64::MAX, u64::MAX);
+    }
     (caps.read_write_textures, caps.is_cpu) = (true, args.for_cpu);
     let mut backend = NullBackend::new(caps);
     let (volume, copies) = (params.volume.clone(), params.material(0).copies > 1);

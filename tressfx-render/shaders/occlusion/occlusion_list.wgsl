@@ -1,11 +1,11 @@
-// The segments of a section that are not behind what is seen farthest in all tiles that they may touch. One group takes some in a row; it
+// The segments of a section that are not behind what is seen farthest in all tiles that they may touch. One lane takes some of a strand; it
 // is run before and behind `occlusion_depth`.
 
 import package::grid::GROUP;
 import package::occlusion::OccludedTile;
-import package::points::{ANYWHERE, SOMEWHERE, point_of, reach_between};
+import package::points::{ANYWHERE, NOWHERE, SOMEWHERE, point_of, reach_between};
 import package::screen::tile_columns;
-import package::strands::{end_at, is_sound_at, section, strand_at};
+import package::strands::{Strand, end_at, is_sound_at, section, strand_at};
 
 struct SegmentList {
     count: atomic<u32>,
@@ -26,7 +26,7 @@ struct ListGrid {
 @group(0) @binding(8) var<storage, read_write> grid: ListGrid;
 
 const LANES: u32 = 256u;
-// Segments that a lane looks at.
+// Segments of a strand that a lane looks at.
 const LOOKS: u32 = 4u;
 const MOST_GROUPS: u32 = 65535u;
 
@@ -46,20 +46,37 @@ fn is_before(nearest: f32, low: vec2<i32>, high: vec2<i32>) -> bool {
     return false;
 }
 
-fn may_be_seen(segment: u32) -> bool {
-    if segment >= section.lod.strands * (section.lod.vertices - 1u) {
-        return false;
+// A vertex on the screen, see `point_of`; nowhere if it is not sound.
+fn vertex_at(strand: Strand, vertex: u32) -> vec4<f32> {
+    if !is_sound_at(strand, vertex) {
+        return NOWHERE;
     }
-    let strand = strand_at(segment % section.lod.strands);
-    let vertex = segment / section.lod.strands;
-    if !is_sound_at(strand, vertex) || !is_sound_at(strand, vertex + 1u) {
-        return false;
-    }
-    let reach = reach_between(point_of(end_at(strand, vertex)), point_of(end_at(strand, vertex + 1u)));
+    return point_of(end_at(strand, vertex));
+}
+
+fn may_be_seen(a: vec4<f32>, b: vec4<f32>) -> bool {
+    let reach = reach_between(a, b);
     if reach.place != SOMEWHERE {
         return reach.place == ANYWHERE;
     }
     return is_before(reach.nearest, reach.low, reach.high);
+}
+
+// Which of the segments of a strand from a vertex on may be seen: a bit for each of LOOKS. They share their vertices, which take most of the time.
+fn seen_from(number: u32, first: u32) -> u32 {
+    let end = min(first + LOOKS, section.lod.vertices - 1u);
+    if first >= end {
+        return 0u;
+    }
+    let strand = strand_at(number);
+    var seen = 0u;
+    var before = vertex_at(strand, first);
+    for (var vertex = first; vertex < end; vertex++) {
+        let behind = vertex_at(strand, vertex + 1u);
+        seen |= u32(may_be_seen(before, behind)) << (vertex - first);
+        before = behind;
+    }
+    return seen;
 }
 
 // Finds a place for all of the group, and threads that walk them.
@@ -80,11 +97,10 @@ fn occlusion_list(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgrou
         atomicStore(&found, 0u);
     }
     workgroupBarrier();
-    let begin = (group.y * groups.x + group.x) * LANES * LOOKS + lane;
-    var seen = 0u;
-    for (var i = 0u; i < LOOKS; i++) {
-        seen |= u32(may_be_seen(begin + i * LANES)) << i;
-    }
+    let thread = (group.y * groups.x + group.x) * LANES + lane;
+    let number = thread % section.lod.strands;
+    let vertex = thread / section.lod.strands * LOOKS;
+    let seen = seen_from(number, vertex);
     var place = atomicAdd(&found, countOneBits(seen));
     workgroupBarrier();
     let count = atomicLoad(&found);
@@ -95,7 +111,7 @@ fn occlusion_list(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgrou
     place += first;
     for (var i = 0u; i < LOOKS; i++) {
         if ((seen >> i) & 1u) == 1u {
-            list.segments[place] = begin + i * LANES;
+            list.segments[place] = (vertex + i) * section.lod.strands + number;
             place++;
         }
     }

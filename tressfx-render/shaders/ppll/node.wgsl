@@ -40,7 +40,8 @@ struct PoolUniform {
     weighs: u32,
     // How many of the nearest are put in order.
     sorted: u32,
-    unused_2: u32,
+    // Nodes of the first of two buffers.
+    first_nodes: u32,
     // The colour of a tail that is not shaded.
     unlit: vec4<f32>,
 }

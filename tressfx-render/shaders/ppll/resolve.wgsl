@@ -38,6 +38,8 @@ import package::weight::{Nearest, weight_of};
 @if(!bounded)
 @group(0) @binding(2) var<storage, read> heads: array<u32>;
 @group(0) @binding(3) var<storage, read> nodes: array<Node>;
+@if(more_nodes)
+@group(0) @binding(9) var<storage, read> more_nodes: array<Node>;
 @if(bounded)
 @group(0) @binding(8) var<storage, read> rest: array<u32>;
 
@@ -59,12 +61,23 @@ struct Tail {
 
 @if(!places)
 fn is_before(a: Content, b: Content) -> bool {
-    return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && a.z < b.z)));
+    return (a.x < b.x) | ((a.x == b.x) & ((a.y < b.y) | ((a.y == b.y) & (a.z < b.z))));
 }
 
 @if(places)
 fn is_before(a: Content, b: Content) -> bool {
-    return a.x < b.x || (a.x == b.x && (a.y < b.y || (a.y == b.y && (a.z < b.z || (a.z == b.z && a.w < b.w)))));
+    return (a.x < b.x) | ((a.x == b.x) & ((a.y < b.y) | ((a.y == b.y) & ((a.z < b.z) | ((a.z == b.z) & (a.w < b.w))))));
+}
+
+// The node of a number; of that of no node the first one.
+fn node_of(number: u32) -> Node {
+    let place = max(number, 1u) - 1u;
+    @if(more_nodes) {
+        if place >= pool.first_nodes {
+            return more_nodes[place - pool.first_nodes];
+        }
+    }
+    return nodes[place];
 }
 
 fn add_opacity(tail: ptr<function, Tail>, node: Content) {
@@ -93,7 +106,7 @@ fn add_weighted(tail: ptr<function, Tail>, head: u32, nearest: ptr<function, arr
     var all: Tail;
     var next = head;
     while next != NOTHING {
-        let node = nodes[next - 1u];
+        let node = node_of(next);
         let content = content_of(node);
         next = next_of(node);
         let is_behind = K > 0u && is_before((*nearest)[ROOM - 1u], content);
@@ -154,18 +167,17 @@ fn rest_of(index: u32) -> Tail {
     return tail;
 }
 
-// Puts a node at its place among the nearest, which is before the last one. Those behind it move up; returns the one that falls out.
+// Puts a node at its place among the nearest; returns the one that falls out. It goes up, so that compilers unroll it: with the array in memory it takes
+// twice as long on a CPU.
 fn insert(nearest: ptr<function, array<Content, ROOM>>, node: Content) -> Content {
-    let last = (*nearest)[ROOM - 1u];
-    var is_here = true;
-    for (var i = ROOM - 1u; i > 0u; i--) {
-        let before = (*nearest)[i - 1u];
-        let is_further = is_before(node, before);
-        (*nearest)[i] = select(select((*nearest)[i], node, is_here), before, is_further);
-        is_here = is_further;
+    var passed = node;
+    for (var i = 0u; i < ROOM; i++) {
+        let here = (*nearest)[i];
+        let is_first = is_before(passed, here);
+        (*nearest)[i] = select(here, passed, is_first);
+        passed = select(passed, here, is_first);
     }
-    (*nearest)[0] = select((*nearest)[0], node, is_here);
-    return last;
+    return passed;
 }
 
 fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
@@ -176,7 +188,7 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
     var tail: Tail;
     @if(shaded || unshaded) { tail = behind; }
     // The next node is fetched before this one is looked at: the time is that of waiting for memory.
-    var node = nodes[max(head, 1u) - 1u];
+    var node = node_of(head);
     var next = head;
     @if(weighted)
     var length = 0u;
@@ -184,7 +196,7 @@ fn resolve_list(head: u32, behind: Tail) -> vec4<f32> {
         next = next_of(node);
         @if(weighted) { length++; }
         var passed = content_of(node);
-        node = nodes[max(next, 1u) - 1u];
+        node = node_of(next);
         if K > 0u && is_before(passed, nearest[ROOM - 1u]) {
             passed = insert(&nearest, passed);
         }
@@ -205,7 +217,7 @@ fn nearest_seen(index: u32, head: u32) -> u32 {
     @if(bounded) { seen = rest[WORDS * index + KEY]; }
     var next = head;
     while next != NOTHING {
-        let node = nodes[next - 1u];
+        let node = node_of(next);
         let content = content_of(node);
         next = next_of(node);
         seen = max(seen, seen_key(nearness_of(content.x), packed_alpha(content.yz)));

@@ -16,6 +16,9 @@ import package::weight::{Nearest, weight_of};
 @if(!bounded)
 @group(0) @binding(7) var<storage, read_write> heads: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> nodes: array<Node>;
+// Where one buffer cannot hold all.
+@if(more_nodes)
+@group(0) @binding(14) var<storage, read_write> more_nodes: array<Node>;
 @group(0) @binding(9) var<storage, read_write> counters: Counters;
 // The keys of the nearest fragments of each pixel, `pool.kept` of them, the largest first.
 @if(bounded)
@@ -66,10 +69,20 @@ fn rest_weight(index: u32, fragment: Fragment) -> u32 {
     return weight_of(fragment.alpha, fragment.nearness, Nearest(kept_nearness(first), kept_nearness(last), pool.kept));
 }
 
+fn store(node: u32, content: Node) {
+    @if(more_nodes) {
+        if node >= pool.first_nodes {
+            more_nodes[node - pool.first_nodes] = content;
+            return;
+        }
+    }
+    nodes[node] = content;
+}
+
 // Puts a node at the head of the list of a pixel.
 fn link(index: u32, node: u32, fragment: Fragment) {
-    @if(!bounded) { nodes[node] = pack_node(fragment, atomicExchange(&heads[index], node + 1u)); }
-    @if(bounded) { nodes[node] = pack_node(fragment, atomicExchange(&rest[WORDS * index + HEAD], node + 1u)); }
+    @if(!bounded) { store(node, pack_node(fragment, atomicExchange(&heads[index], node + 1u))); }
+    @if(bounded) { store(node, pack_node(fragment, atomicExchange(&rest[WORDS * index + HEAD], node + 1u))); }
 }
 
 fn take(sink: ptr<function, Sink>, pixel: vec2<u32>, fragment: Fragment) {

@@ -21,8 +21,11 @@ const LIBRARY: &[Module] = &with_shared::<2, 20>([
     ("sink", include_str!("../../shaders/occlusion/occlusion_sink.wgsl")),
 ]);
 
-/// Segments that a group of `occlusion_list` looks at.
-const SEGMENTS_OF_A_GROUP: u32 = 1024;
+/// Lanes of a group of `occlusion_list`.
+const LIST_LANES: u32 = 256;
+
+/// Segments of a strand that one of them looks at.
+const SEGMENTS_OF_A_LANE: u32 = 4;
 
 /// A section in a view before a scene.
 type Key = (usize, BufferId, TextureId);
@@ -125,7 +128,9 @@ impl Kernels {
             of.memory.empty(list, listed);
             let [view, section, positions, _, thickness, _] = draw.strands.bindings(of.view, of.scene);
             let own = [("tiles", of.memory.tiles.into()), ("list", listed.segments), ("grid", listed.grid)];
-            let grid = Grid::for_threads(draw.segments(), SEGMENTS_OF_A_GROUP);
+            let lod = draw.lod_uniform();
+            let threads = lod.strands * (lod.vertices - 1).div_ceil(SEGMENTS_OF_A_LANE);
+            let grid = Grid::for_threads(threads, LIST_LANES);
             let all = [&[view, section, positions, thickness][..], &own].concat();
             self.list.record(list, (of.key(draw), listed.place()), Groups::Grid(grid), &all)?;
         }

@@ -94,7 +94,7 @@ impl Bounded {
     ) -> Result<Prepared> {
         check(backend, size, desc.asked(), output)?;
         let make = |backend: &mut dyn Backend| {
-            let fill = fill::pass(backend, desc, true, output)?.with_lists(backend, walks_lists)?;
+            let fill = fill::pass(backend, desc, [true, false], output)?.with_lists(backend, walks_lists)?;
             Ok(Kernels { nearest: nearest::pass(backend, output)?.with_lists(backend, walks_lists)?, fill })
         };
         let kernels = if self.kernels.is_none() { Some(make(backend)?) } else { None };

@@ -1,6 +1,7 @@
 //! What lists are asked to be.
 
 use super::Tail;
+use super::nodes::NodeLimits;
 use super::resolve::Variant;
 use crate::output::Output;
 use crate::segments::Fill;
@@ -19,7 +20,8 @@ pub struct PpllDesc {
     /// 4 for each of the nearest a pixel, and a third walk over the strands. Lists become so by themselves where there would be
     /// more fragments than there may be room for.
     pub cap: Option<u32>,
-    /// Memory that the lists of fragments may take, 16 bytes a fragment, 20 with several places. The device's own limit for one binding holds too.
+    /// Memory that the lists of fragments may take, 16 bytes a fragment, 20 with several places. They lie in one binding or in two, of what the device
+    /// allows each to hold.
     pub max_node_bytes: u64,
     /// Where the counter of fragments stops, at most [`PpllDesc::COUNT_LIMIT`]; no more find room.
     pub count_limit: u32,
@@ -96,8 +98,9 @@ impl PpllDesc {
         if self.places > 1 { Some(false) } else { self.skips_hidden }
     }
 
-    pub(super) fn variant(&self, bounded: bool, output: Output) -> Variant {
-        Variant { k: self.k, tail: self.tail, places: self.places, bounded, output }
+    pub(super) fn variant(&self, bounded: bool, limits: &NodeLimits, output: Output) -> Variant {
+        let more_nodes = limits.has_more(bounded);
+        Variant { k: self.k, tail: self.tail, places: self.places, bounded, more_nodes, output }
     }
 }
 

@@ -14,8 +14,14 @@ const SHADERS: Shaders = Shaders {
     library: LIBRARY,
 };
 
-/// The pass; where lists are bounded, only the nearest fragments of a pixel have nodes.
-pub(crate) fn pass(backend: &mut dyn Backend, desc: &PpllDesc, is_bounded: bool, output: Output) -> Result<Segments> {
-    let specialization = at_places(output.specialization().feature("bounded", is_bounded), desc.places, 1);
+/// The pass; where lists are bounded, only the nearest fragments of a pixel have nodes. They may have two buffers of them.
+pub(crate) fn pass(
+    backend: &mut dyn Backend,
+    desc: &PpllDesc,
+    [is_bounded, has_more_nodes]: [bool; 2],
+    output: Output,
+) -> Result<Segments> {
+    let specialization = output.specialization().feature("bounded", is_bounded).feature("more_nodes", has_more_nodes);
+    let specialization = at_places(specialization, desc.places, 1);
     Segments::new(backend, desc.fill, SHADERS, &specialization, output.color)
 }

@@ -28,6 +28,8 @@ pub(crate) struct Variant {
     pub(crate) places: u32,
     /// Whether there is a rest of fragments without nodes.
     pub(crate) bounded: bool,
+    /// Whether there are two buffers of nodes.
+    pub(crate) more_nodes: bool,
     pub(crate) output: Output,
 }
 
@@ -38,6 +40,7 @@ impl Variant {
             .feature("weighted", self.tail == Tail::Weighted)
             .feature("unshaded", self.tail == Tail::Unshaded)
             .feature("bounded", self.bounded)
+            .feature("more_nodes", self.more_nodes)
             .constant("K", self.k)
     }
 }
@@ -88,15 +91,12 @@ impl Resolve {
         let bindings = bound.get((view.index, *variant), || {
             let own = [
                 ("view", view.uniform),
-                ("pool", pool.uniform.into()),
-                ("nodes", pool.nodes.into()),
-                ("counters", pool.counters.of(view.index).into()),
                 ("resolved", resolved.colors.into()),
                 ("tiles", resolved.tiles.into()),
                 ("tile_vertices", resolved.draw.into()),
             ];
             let lists = rest.unwrap_or(("heads", pool.heads.into()));
-            kernel.bind(&[&own[..], &[lists]].concat())
+            kernel.bind(&[&own[..], &[lists], &pool.bindings(view.index, variant.bounded)].concat())
         })?;
         list.compute(kernel, &bindings, view.region.grid());
         Ok(())
