@@ -112,7 +112,7 @@ fn a_renderer_its_size_and_its_sections() {
     let (before, capacity) = (backend.living(), renderer.capacity());
     let many = Counters { wanted: 8 * capacity, ..Counters::default() };
     let (_, failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &many));
-    assert_eq!(failures, 1, "the new nodes; the old ones stay where they cannot be made");
+    assert_eq!(failures, 2, "the new nodes, in two buffers; the old ones stay where they cannot be made");
     assert!(renderer.capacity() > capacity && backend.living().0 == before.0);
     let too_many = Counters { wanted: u32::MAX, ..Counters::default() };
     let (_, failures) = backend.fail_everywhere(|backend| renderer.grow_to_measured(backend, &too_many));
