@@ -32,7 +32,7 @@ use crate::usage::Usage;
 use crate::views::BoundView;
 use bounded::{Bounded, Prepared};
 use pool::{HEAD_BYTES, NodePool};
-use resolve::Resolve;
+use resolve::{Resolve, Variant};
 
 pub use desc::PpllDesc;
 #[cfg(test)]
@@ -127,16 +127,21 @@ impl Ppll {
         Ok(made)
     }
 
+    /// What `resolve` is compiled for.
+    fn variant(&self, desc: &PpllDesc, is_bounded: bool) -> Variant {
+        desc.variant(is_bounded, &self.pool.limits, self.output)
+    }
+
     /// Makes what it takes to keep only as many fragments of a pixel as `desc` needs, and changes nothing yet.
     fn prepare(&self, backend: &mut dyn Backend, desc: &PpllDesc) -> Result<(Option<Kernel>, Prepared)> {
-        let kernel = self.resolve.prepare(backend, desc.variant(true, &self.pool.limits, self.output))?;
+        let kernel = self.resolve.prepare(backend, self.variant(desc, true))?;
         let walks_lists = self.occlusion.is_wanted();
         Ok((kernel, self.bounded.prepare(backend, self.size, desc, self.output, walks_lists)?))
     }
 
     /// Does so.
     fn bound(&mut self, backend: &mut dyn Backend, desc: &PpllDesc, (kernel, prepared): (Option<Kernel>, Prepared)) {
-        self.resolve.change(desc.variant(true, &self.pool.limits, self.output), kernel);
+        self.resolve.change(self.variant(desc, true), kernel);
         self.bounded.turn_on(backend, prepared);
         self.kept = desc.asked();
         self.forget_bindings();
@@ -170,11 +175,11 @@ impl Ppll {
         if self.desc.cap.is_some() || !self.bounded.is_on() || !has_room {
             return Ok(false);
         }
-        let kernel = self.resolve.prepare(backend, self.desc.variant(false, &self.pool.limits, self.output))?;
+        let kernel = self.resolve.prepare(backend, self.variant(&self.desc, false))?;
         if let Some(nodes) = self.pool.prepare(backend, with_headroom(fragments), false)? {
             self.pool.replace(backend, nodes);
         }
-        self.resolve.change(self.desc.variant(false, &self.pool.limits, self.output), kernel);
+        self.resolve.change(self.variant(&self.desc, false), kernel);
         self.bounded.turn_off(backend);
         self.forget_bindings();
         Ok(true)
@@ -248,7 +253,7 @@ impl Ppll {
 
     /// Gives back all nodes, until more are reserved.
     pub(crate) fn release(&mut self, backend: &mut dyn Backend) -> Result<()> {
-        let variant = self.desc.variant(self.desc.cap.is_some(), &self.pool.limits, self.output);
+        let variant = self.variant(&self.desc, self.desc.cap.is_some());
         let kernel = self.resolve.prepare(backend, variant)?;
         if let Some(nodes) = self.pool.prepare_idle(backend)? {
             self.pool.replace(backend, nodes);
@@ -341,8 +346,8 @@ impl TechniqueInstance for Ppll {
         let was_capped = self.desc.cap.is_some();
         let stays = self.bounded.is_on() && (desc.cap.is_some() || !was_capped);
         if stays && self.bounded.asked() == desc.asked() || !stays && desc.cap.is_none() {
-            let kernel = self.resolve.prepare(backend, desc.variant(stays, &self.pool.limits, self.output))?;
-            self.resolve.change(desc.variant(stays, &self.pool.limits, self.output), kernel);
+            let kernel = self.resolve.prepare(backend, self.variant(desc, stays))?;
+            self.resolve.change(self.variant(desc, stays), kernel);
             if !stays {
                 self.bounded.turn_off(backend);
             }

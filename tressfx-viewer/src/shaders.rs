@@ -124,6 +124,7 @@ fn shaders(args: &cli::Shaders) -> Result<Vec<Arc<Shader>>> {
     let groom = Groom::load(std::slice::from_ref(&args.groom), args.follow)?;
     let params = Params::read(args.params.as_deref(), 1)?;
     let mut caps = Caps::webgpu_default();
+    // What a device can hold does not matter where nothing runs, unless it is asked what it would run.
     if !args.for_least_limits {
         (caps.max_storage_binding_bytes, caps.max_buffer_bytes) = (u64::MAX, u64::MAX);
     }
