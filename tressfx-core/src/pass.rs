@@ -39,6 +39,12 @@ impl Grid {
         Self([groups.div_ceil(rows), rows, 1])
     }
 
+    /// The same for each of so many planes: the kernel finds its own in `z` of its group, without a division.
+    pub fn planes(self, planes: u32) -> Self {
+        let Self([x, y, z]) = self;
+        Self([x, y, z * planes])
+    }
+
     /// Groups of `group` x `group` threads for every texel of an image.
     pub fn for_image(size: [u32; 2], group: u32) -> Self {
         Self([size[0].div_ceil(group), size[1].div_ceil(group), 1])

@@ -5,7 +5,7 @@ import package::grid::{GROUP, thread_index};
 @if(!fibre) import package::lighting::{Fibre, scatter};
 import package::ribbon::is_sound;
 @if(fibre) import package::scattering::{Fibre, fibres, scatter, under_sky};
-import package::section::{SectionUniform, shaded_vertex, strand_random};
+import package::section::{SectionUniform, stepped, strand_random};
 import package::view::{STORED_LIGHTS, ViewUniform, towards, towards_eye};
 
 @group(0) @binding(0) var<uniform> view: ViewUniform;
@@ -140,19 +140,26 @@ fn own_at(guide: u32, vertex: u32) -> vec4<f32> {
     return vec4(1.0);
 }
 
+// The guide that a strand follows. Guides themselves come first, and need no division.
+fn guide_of(strand: u32) -> u32 {
+    if strand < section.guides {
+        return strand;
+    }
+    return strand % section.guides;
+}
+
 @compute @workgroup_size(GROUP)
 fn shade(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
          @builtin(local_invocation_index) lane: u32) {
-    let thread = thread_index(group, groups, lane);
-    if thread >= section.shaded_strands * section.lod.vertices {
+    let strand = thread_index(group, groups, lane);
+    if strand >= section.shaded_strands {
         return;
     }
-    let shaded = shaded_vertex(section.lod, section.shaded_strands, thread, section.vertices);
-    let strand = shaded.x;
-    let i = shaded.y * section.strands + strand;
-    let guide = strand % section.guides;
-    let place = place_of(strand, guide, shaded.y);
-    let own = own_at(guide, shaded.y);
+    let vertex = stepped(section.lod, group.z, section.vertices);
+    let i = vertex * section.strands + strand;
+    let guide = guide_of(strand);
+    let place = place_of(strand, guide, vertex);
+    let own = own_at(guide, vertex);
     let point = posed(i);
     let tangent = (section.pose * vec4(tangents[i].xyz, 0.0)).xyz;
     let tilt = section.tilt * (1.0 + section.tilt_variation * strand_random(strand, guide, 1u));

@@ -3,12 +3,12 @@
 use tressfx_core::backend::Backend;
 use tressfx_core::error::Result;
 use tressfx_core::id::BufferId;
-use tressfx_core::pass::{Grid, PassList};
+use tressfx_core::pass::PassList;
 use tressfx_core::shader::{Kernel, Module, Specialization};
 
 use crate::bound::Bound;
 use crate::scattering::{FibreTable, Shape};
-use crate::shaders::{GROUP, compute, with_shared};
+use crate::shaders::{compute, with_shared};
 use crate::strands::SectionDraw;
 use crate::views::BoundView;
 
@@ -118,7 +118,7 @@ impl Shade {
             resources.extend(own_colors.map(|colors| ("own_colors", colors.into())));
             kernel.bind(&resources)
         })?;
-        list.compute(kernel, &bindings, Grid::for_threads(draw.shaded_vertices(), GROUP));
+        list.compute(kernel, &bindings, draw.shaded_grid());
         Ok(())
     }
 }

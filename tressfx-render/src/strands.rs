@@ -4,7 +4,7 @@ use glam::Vec3;
 use tressfx_core::backend::{Backend, BufferDesc, Owner};
 use tressfx_core::error::{Error, Result};
 use tressfx_core::id::{BufferId, TextureId};
-use tressfx_core::pass::PassList;
+use tressfx_core::pass::{Grid, PassList};
 use tressfx_core::shader::Binding;
 use tressfx_core::strand_buffers::{StrandBuffers, StrandShape};
 use tressfx_core::strands::Strands;
@@ -17,6 +17,7 @@ use crate::material::Material;
 use crate::own_look::{OwnBuffers, OwnLook};
 use crate::reach;
 use crate::scattering::ENTRIES;
+use crate::shaders::GROUP;
 use crate::uniforms::{LodUniform, SectionUniform};
 use crate::velocity::Past;
 use crate::views::BoundView;
@@ -364,10 +365,10 @@ impl<'a> SectionDraw<'a> {
         self.lod.shadow_strands(self.drawn_shape())
     }
 
-    /// Vertices that are shaded: copies have the colours of their strands.
-    pub(crate) fn shaded_vertices(&self) -> u32 {
+    /// A thread for each vertex that is shaded, a plane for each vertex of a strand: copies have the colours of their strands.
+    pub(crate) fn shaded_grid(&self) -> Grid {
         let lod = self.lod_uniform();
-        lod.strands.min(self.strands.buffers.shape.strands()) * lod.vertices
+        Grid::for_threads(lod.strands.min(self.strands.buffers.shape.strands()), GROUP).planes(lod.vertices)
     }
 
     /// Vertices that are drawn.

@@ -4,7 +4,7 @@ import package::view::STORED_LIGHTS;
 import package::grid::{GROUP, thread_index};
 import package::hair_shadow::{hair_light, hair_sky};
 import package::ribbon::is_sound;
-import package::section::{SectionUniform, shaded_vertex};
+import package::section::{SectionUniform, stepped};
 
 @group(0) @binding(0) var<uniform> section: SectionUniform;
 @group(0) @binding(1) var<storage, read> positions: array<vec4<f32>>;
@@ -14,12 +14,12 @@ import package::section::{SectionUniform, shaded_vertex};
 @compute @workgroup_size(GROUP)
 fn shadow_light(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                 @builtin(local_invocation_index) lane: u32) {
-    let thread = thread_index(group, groups, lane);
-    if thread >= section.shaded_strands * section.lod.vertices {
+    let strand = thread_index(group, groups, lane);
+    if strand >= section.shaded_strands {
         return;
     }
-    let shaded = shaded_vertex(section.lod, section.shaded_strands, thread, section.vertices);
-    let i = shaded.y * section.strands + shaded.x;
+    let vertex = stepped(section.lod, group.z, section.vertices);
+    let i = vertex * section.strands + strand;
     let local = positions[i].xyz;
     let point = (section.pose * vec4(select(vec3(0.0), local, is_sound(local)), 1.0)).xyz;
     let open = hair_sky(point);

@@ -2,7 +2,7 @@
 
 import package::grid::{GROUP, thread_index};
 import package::ribbon::{is_sound, on_screen, scale_at};
-import package::section::{SectionUniform, shaded_vertex};
+import package::section::{SectionUniform, stepped};
 import package::shares::{root_of_share, with_root};
 import package::view::{LensUniform, STORED_LIGHTS};
 
@@ -94,12 +94,12 @@ fn share_at(scene: u32, point: vec3<f32>) -> f32 {
 @compute @workgroup_size(GROUP)
 fn shadow_opaque(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                  @builtin(local_invocation_index) lane: u32) {
-    let thread = thread_index(group, groups, lane);
-    if thread >= section.shaded_strands * section.lod.vertices {
+    let strand = thread_index(group, groups, lane);
+    if strand >= section.shaded_strands {
         return;
     }
-    let shaded = shaded_vertex(section.lod, section.shaded_strands, thread, section.vertices);
-    let i = shaded.y * section.strands + shaded.x;
+    let vertex = stepped(section.lod, group.z, section.vertices);
+    let i = vertex * section.strands + strand;
     if !is_sound(positions[i].xyz) {
         return;
     }

@@ -64,11 +64,6 @@ fn stepped(lod: LodUniform, vertex: u32, vertices: u32) -> u32 {
     return min(vertex * lod.step, vertices - 1u);
 }
 
-// Strand and vertex of thread `i`, of those that shade so many strands; `vertices` are those of the whole strand.
-fn shaded_vertex(lod: LodUniform, strands: u32, i: u32, vertices: u32) -> vec2<u32> {
-    return vec2(i % strands, stepped(lod, i / strands, vertices));
-}
-
 // The strand of the buffers, which have so many, that a strand or a copy is: copies are numbered behind all strands, in their order.
 fn source_of(strands: u32, strand: u32) -> u32 {
     @if(copies) { return strand % strands; }

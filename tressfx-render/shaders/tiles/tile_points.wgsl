@@ -1,6 +1,6 @@
 // What may be seen of a section on the screen: the vertices of its segments, behind those of the sections before, so that one kernel can
 // draw segments of all of them. Segments outside of the picture, and those behind the opaque scene in all tiles that they may touch, are
-// left out. Also the nearest vertex of each tile. One thread a vertex; a group has a piece of each of several strands.
+// left out. Also the nearest vertex of each tile. One thread a vertex; a group has a piece of each of several strands, the one of its plane.
 
 import package::joint::{ROUND, tilt_of};
 import package::points::{ANYWHERE, NOWHERE, SOMEWHERE, point_of, reach_between};
@@ -17,14 +17,14 @@ import package::tiles::{SharedTileInfo, ViewState, tiles};
 @group(0) @binding(9) var<storage, read_write> infos: array<SharedTileInfo>;
 
 const LANES: u32 = 256u;
-// A piece of a strand has at most so many segments: a bit each, and one for the vertex at its end.
-const MOST_SEGMENTS: u32 = 31u;
 // Strands of a group: those whose pieces have two vertices.
 const MOST_STRANDS: u32 = LANES / 2u;
-// The nearest vertex of a tile is looked for among so many strands, and in one of MOST_BETWEEN at least: it decides about speed alone. Hair before the vertex
-// that is found is all in the first slice; where a strand lies alone before the others, it takes the thin slices from them.
-const SAMPLES: u32 = 8192u;
+// The nearest vertex of a tile is looked for among so many vertices of a section, and in one run of lanes of MOST_BETWEEN at least: it decides about speed
+// alone. Hair before the vertex that is found is all in the first slice; where a strand lies alone before the others, it takes the thin slices from them.
+const SAMPLES: u32 = 131072u;
 const MOST_BETWEEN: u32 = 8u;
+// Lanes beside each other, which a GPU has at work together: those that look make no others wait.
+const RUN: u32 = LANES / MOST_BETWEEN;
 
 // The points of the group: a vertex of each strand, then the next ones.
 var<workgroup> points: array<vec4<f32>, LANES>;
@@ -34,21 +34,30 @@ var<workgroup> seen: array<atomic<u32>, MOST_STRANDS>;
 var<workgroup> starts: array<u32, MOST_STRANDS>;
 var<workgroup> first_place: u32;
 
-// How strands are cut into pieces, all alike: a piece ends with the vertex that the next one begins with.
+// How strands are cut into pieces, all alike: a piece ends with the vertex that the next one begins with. It has at most 31 segments: a bit each, and
+// one for the vertex at its end.
 struct Pieces {
-    // Of a strand.
-    count: u32,
     // Of a piece.
     segments: u32,
     // Of a group.
     strands: u32,
 }
 
-fn pieces() -> Pieces {
-    let segments = section.lod.vertices - 1u;
-    let count = (segments + MOST_SEGMENTS - 1u) / MOST_SEGMENTS;
-    let own = (segments + count - 1u) / count;
-    return Pieces(count, own, LANES / (own + 1u));
+// A quotient of whole numbers below 1024. It is exact: with the half, it is at least 1/2048 away from a whole number, and off by less than 3e-4.
+fn quotient(number: u32, divisor: u32) -> u32 {
+    return u32((f32(number) + 0.5) / f32(divisor));
+}
+
+// Where a strand has so many.
+fn pieces(count: u32) -> Pieces {
+    let segments = quotient(section.lod.vertices + count - 2u, count);
+    return Pieces(segments, quotient(LANES, segments + 1u));
+}
+
+// Whether a lane of a group looks for the nearest vertices of tiles.
+fn looks(group: u32, lane: u32) -> bool {
+    let between = 1u << firstLeadingBit(clamp(section.lod.strands * section.lod.vertices / SAMPLES, 1u, MOST_BETWEEN));
+    return ((lane / RUN - group) & (between - 1u)) == 0u;
 }
 
 fn screen_point(strand: Strand, vertex: u32) -> vec4<f32> {
@@ -152,14 +161,13 @@ fn place_all(strands: u32, lane: u32) {
 @compute @workgroup_size(LANES)
 fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
                @builtin(local_invocation_index) lane: u32) {
-    let pieces = pieces();
+    let pieces = pieces(groups.z);
     let index = group.y * groups.x + group.x;
-    // Exact: with the half, a quotient is at least 1/256 away from a whole number, and off by less than 1e-4.
-    let own_vertex = u32((f32(lane) + 0.5) / f32(pieces.strands));
+    let own_vertex = quotient(lane, pieces.strands);
     let own = lane - own_vertex * pieces.strands;
-    let number = index / pieces.count * pieces.strands + own;
+    let number = index * pieces.strands + own;
     let strand = strand_at(number);
-    let vertex = index % pieces.count * pieces.segments + own_vertex;
+    let vertex = group.z * pieces.segments + own_vertex;
     let exists = own_vertex <= pieces.segments && number < section.lod.strands && vertex < section.lod.vertices;
     var point = NOWHERE;
     var paint: vec2<u32>;
@@ -167,7 +175,7 @@ fn tile_points(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups)
         // Read before it is known whether the vertex is kept: later, all of the group would wait for it.
         paint = colors[vertex_of(strand, vertex)];
         point = screen_point(strand, vertex);
-        if number % clamp(section.lod.strands / SAMPLES, 1u, MOST_BETWEEN) == 0u && is_sound(point.xyz) {
+        if looks(index, lane) && is_sound(point.xyz) {
             note_nearest(point);
         }
     }

@@ -164,8 +164,7 @@ impl Kernels {
             ("arriving", strands.arriving.into()),
         ];
         let resources = [&memory.bindings(set)[..], &own].concat();
-        let grid = Grid::for_threads(draw.shaded_vertices(), GROUP);
-        self.light.record(list, (set, Some(strands.arriving), None), grid, &resources)
+        self.light.record(list, (set, Some(strands.arriving), None), draw.shaded_grid(), &resources)
     }
 
     /// What the opaque scene leaves of some lights at each vertex of a section; `scenes` is an [`OpaqueScenesUniform`](super::OpaqueScenesUniform).
@@ -184,7 +183,6 @@ impl Kernels {
             ("positions", strands.buffers.positions.into()),
             ("arriving", strands.arriving.into()),
         ];
-        let grid = Grid::for_threads(draw.shaded_vertices(), GROUP);
-        self.opaque.record(list, (scenes.0, Some(strands.arriving), Some(depth)), grid, &resources)
+        self.opaque.record(list, (scenes.0, Some(strands.arriving), Some(depth)), draw.shaded_grid(), &resources)
     }
 }

@@ -19,7 +19,7 @@ pub(crate) const SLICES: u32 = 64;
 /// Lanes of a group of `tile_points`.
 const LANES: u32 = 256;
 
-/// Segments of a piece of a strand, at most: see `tile_points.wgsl`.
+/// Segments of a piece of a strand, at most: see `tile_points.wgsl`, which has a bit for each of its vertices.
 const MOST_SEGMENTS: u32 = 31;
 
 /// How much further than at rest hair is expected from the middle of its section. What is further away still comes in its
@@ -92,7 +92,7 @@ pub(crate) fn points_grid(draw: &SectionDraw) -> Grid {
     let LodUniform { strands, vertices, .. } = draw.lod_uniform();
     let pieces = pieces(vertices);
     let of_a_group = LANES / ((vertices - 1).div_ceil(pieces) + 1);
-    Grid::for_threads(strands.div_ceil(of_a_group) * pieces, 1)
+    Grid::for_threads(strands.div_ceil(of_a_group), 1).planes(pieces)
 }
 
 /// # Errors
