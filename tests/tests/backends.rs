@@ -20,7 +20,7 @@ use support::gpu;
 static ONE_TEST_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 const SIZE: [u32; 2] = [256, 144];
-const FRAMES: u32 = 10;
+const FRAMES: u32 = 4;
 const GROOMS: [&str; 5] = ["straight:1500:16", "wavy:1500:24", "curly:1200:48", "long:2000:32", "fur:4000:6"];
 
 /// Of the pixels, how many may differ.

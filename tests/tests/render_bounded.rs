@@ -29,19 +29,20 @@ fn alpha_error(screen: &Screen, groom: &Groom, picture: &Picture) -> f64 {
 #[test]
 fn a_cap_changes_memory_and_the_picture_only_below_k() {
     let groom = Groom::wavy(1500, 16, 3, material());
-    for fill in [Fill::Compute, Fill::Raster] {
-        let tails = [(8, Tail::Shaded), (8, Tail::Weighted), (8, Tail::Unshaded), (3, Tail::None), (32, Tail::Shaded)];
-        let weighted = [0, 3, 5].map(|k| (k, Tail::Weighted));
-        for (k, tail) in tails.into_iter().chain([(0, Tail::Shaded)]).chain(weighted) {
-            let desc = PpllDesc::default().k(k).tail(tail).fill(fill);
-            for cap in [0, 1, 3, 8, 40] {
-                let Some(mut all) = screen(lists(desc.k(k.min(cap)))) else { return };
-                let expected = all.hair(&[&groom]);
-                let Some(mut capped) = screen(lists(desc.cap(cap))) else { return };
-                let picture = capped.hair(&[&groom]);
+    let shown = |desc: PpllDesc| Some(screen(lists(desc))?.hair(&[&groom]));
+    let tails =
+        [(Tail::Shaded, &[0, 8, 32][..]), (Tail::Weighted, &[0, 3, 5, 8]), (Tail::Unshaded, &[8]), (Tail::None, &[3])];
+    for (fill, (tail, ks)) in [Fill::Compute, Fill::Raster].into_iter().flat_map(|fill| tails.map(|tail| (fill, tail)))
+    {
+        let desc = PpllDesc::default().tail(tail).fill(fill);
+        let settings: Vec<_> = ks.iter().flat_map(|k| [0, 1, 3, 8, 40].map(|cap| (*k, cap))).collect();
+        for least in [0, 1, 3, 5, 8, 32] {
+            let Some(expected) = shown(desc.k(least)) else { return };
+            for &(k, cap) in settings.iter().filter(|(k, cap)| (*k).min(*cap) == least) {
+                let picture = shown(desc.k(k).cap(cap)).unwrap();
                 assert!(picture.bytes == expected.bytes, "{fill:?}, k = {k}, {tail:?}, a cap of {cap}");
                 let Counters { fragments, pixels_with_hair, .. } = expected.counters;
-                let most = k.min(cap) * pixels_with_hair;
+                let most = least * pixels_with_hair;
                 assert!(picture.counters.wanted <= most + most / 100, "{:?}", picture.counters);
                 assert_eq!(picture.counters, Counters { wanted: picture.counters.wanted, ..expected.counters });
                 assert_eq!((picture.counters.fragments, picture.counters.merged), (fragments, 0));

@@ -51,11 +51,16 @@ fn three_frames(technique: TilesDesc, hair_output: bool) -> Option<Vec<(Vec<u8>,
     Some((0..3).map(|_| frame()).collect())
 }
 
+/// Each kind, and the first one with depth and coverage of hair too.
+fn with_and_without_output(kinds: &[TilesDesc]) -> impl Iterator<Item = (TilesDesc, bool)> {
+    kinds.iter().map(|kind| (*kind, false)).chain(kinds.first().map(|kind| (*kind, true)))
+}
+
 #[test]
 fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
     let plain = TilesDesc::default();
     let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
-    for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+    for (kind, output) in with_and_without_output(&kinds) {
         let Some(undivided) = three_frames(kind.few_tiles(0), output) else { return };
         for few in [20, u32::MAX] {
             let divided = three_frames(kind.few_tiles(few), output).unwrap();
@@ -71,7 +76,7 @@ fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
 fn groups_of_any_number_of_lanes_give_the_same_picture() {
     let plain = TilesDesc::default();
     let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true).few_tiles(20)];
-    for (kind, output) in kinds.into_iter().flat_map(|kind| [(kind, false), (kind, true)]) {
+    for (kind, output) in with_and_without_output(&kinds) {
         let Some(usual) = three_frames(kind.lanes(160), output) else { return };
         for lanes in [96, 224].into_iter().filter(|lanes| kind.places == 1 || *lanes == 96) {
             let others = three_frames(kind.lanes(lanes), output).unwrap();

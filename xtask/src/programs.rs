@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
+use std::time::Instant;
 
 use serde_json::Value;
 
@@ -35,10 +36,11 @@ impl Program {
     fn passes(&self, words: &[&str], environment: &[(&str, &str)]) -> bool {
         let mut command = Command::new(&self.path);
         command.current_dir(&self.folder).args(words).envs(environment.iter().copied()).stdin(Stdio::null());
+        let begin = Instant::now();
         match command.output() {
             Ok(output) => {
                 let said = [&output.stdout[..], &output.stderr].map(String::from_utf8_lossy).concat();
-                println!("{}{said}", self.name);
+                println!("{}, {:.1} s{said}", self.name, begin.elapsed().as_secs_f64());
                 output.status.success()
             }
             Err(error) => {
