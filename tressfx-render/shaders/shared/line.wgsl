@@ -3,7 +3,7 @@
 import package::coverage::{between, coverage, pixel_reach, rise_of};
 import package::fragment::{Fragment, OPAQUE};
 import package::joint::{ROUND, SHARP};
-import package::ribbon::{Ribbon, along};
+import package::ribbon::{Ribbon, along, slant_of};
 import package::screen::{scene_nearness, view};
 
 @if(places)
@@ -94,17 +94,33 @@ fn pixel_length(ribbon: Ribbon, line: Line, owned: f32) -> f32 {
     return select(whole, clamp(2.0 * owned, SHORTEST_PIXEL, whole), has_joint);
 }
 
-// What the ribbon leaves in a pixel at `place` along it, wherever the scene is. Its colour is that of the surface that the pixel sees, see
-// `slant_of`.
-fn fragment_on(ribbon: Ribbon, line: Line, slant: f32, paint: Paint, pixel: vec2<u32>, place: f32, has_ends: bool) -> Fragment {
+// How far the surface that a pixel sees is from the axis, towards the eye.
+fn rise_at(ribbon: Ribbon, line: Line, pixel: vec2<u32>, place: f32) -> f32 {
     let half_width = mix(ribbon.half_width.x, ribbon.half_width.y, place);
     // Of a thin fibre a pixel sees all of its width.
     var rise = MEAN_RISE * half_width;
     if half_width > THIN {
         rise = rise_of(beside(ribbon, line, pixel).y, half_width);
     }
-    let surface = along(ribbon, place) + rise * slant;
-    return fragment_showing(ribbon, line, paint, pixel, place, clamp(surface, -SURPLUS, 1.0 + SURPLUS), has_ends);
+    return rise;
+}
+
+// Where along the segment the surface is that rises so far above `place`, see `slant_of`.
+fn surface_at(ribbon: Ribbon, place: f32, rise: f32, slant: f32) -> f32 {
+    return clamp(along(ribbon, place) + rise * slant, -SURPLUS, 1.0 + SURPLUS);
+}
+
+// What the ribbon leaves in a pixel at `place` along it, wherever the scene is. Its colour is that of the surface that the pixel sees.
+fn fragment_on(ribbon: Ribbon, line: Line, slant: f32, paint: Paint, pixel: vec2<u32>, place: f32, has_ends: bool) -> Fragment {
+    let shown = surface_at(ribbon, place, rise_at(ribbon, line, pixel, place), slant);
+    return fragment_showing(ribbon, line, paint, pixel, place, shown, has_ends);
+}
+
+// The same where a segment is looked at in this pixel alone. The slant is found when it is needed: kept from before, it takes registers.
+fn fragment_alone(ribbon: Ribbon, line: Line, paint: Paint, pixel: vec2<u32>, place: f32) -> Fragment {
+    let rise = rise_at(ribbon, line, pixel, place);
+    let shown = surface_at(ribbon, place, rise, slant_of(view.lens, ribbon));
+    return fragment_showing(ribbon, line, paint, pixel, place, shown, has_ends_of(ribbon));
 }
 
 // The same with the colour of the axis.

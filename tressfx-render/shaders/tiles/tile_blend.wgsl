@@ -16,10 +16,10 @@ import package::fragment::{OPAQUE, depth_key, nearness_of, packed_alpha, packed_
 import package::front::{Front, nothing_yet, over, passes};
 import package::hidden::{FARTHEST, HairState, hidden_by};
 import package::joined::{Joined, blends, is_last_to_close, join, none_closed, pixel_of_lane};
-import package::line::{Line, fragment_of_axis, fragment_on, has_ends_of, is_drawn, line_of, place_of, span_of};
+import package::line::{Line, fragment_alone, fragment_of_axis, is_drawn, line_of, place_of, span_of};
 import package::mean::{add_to_mean, blend_mean, empty_mean};
 import package::quarter::{PIXELS, QUARTER, touched};
-import package::ribbon::{Ribbon, slant_of};
+import package::ribbon::Ribbon;
 import package::screen::{distance_of, scene_nearness, tile_columns, tile_count, view};
 import package::segments::{paint_of, ribbon_of};
 import package::tile::{TILE, resolved_index};
@@ -264,9 +264,7 @@ fn painted_at(place: u32, corner: vec2<u32>) -> Painted {
     let ribbon = ribbon_of(start);
     let line = line_of(ribbon);
     let pixel = pixel_at(corner, pixel_of(entry));
-    let share = place_of(ribbon, line, pixel);
-    let colors = paint_of(start);
-    return paint(entry, place, fragment_on(ribbon, line, slant_of(view.lens, ribbon), colors, pixel, share, has_ends_of(ribbon)));
+    return paint(entry, place, fragment_alone(ribbon, line, paint_of(start), pixel, place_of(ribbon, line, pixel)));
 }
 
 // The colours of the fragments that were found: as many lanes have work as there are fragments. All lanes come here.
