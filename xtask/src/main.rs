@@ -5,7 +5,6 @@ mod chore;
 mod compilers;
 mod driver;
 mod packages;
-mod programs;
 mod validation;
 
 use std::process::ExitCode;
