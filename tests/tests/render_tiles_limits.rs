@@ -37,6 +37,24 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
     }
 }
 
+#[test]
+fn tiles_without_room_show_nothing_of_the_frame_before() {
+    let grooms = [Groom::wavy(400, 16, 1, material()), Groom::wavy(20, 16, 7, material())];
+    let Some(mut roomy) = screen(tiles) else { return };
+    let all = grooms.each_ref().map(|groom| roomy.hair(&[groom]));
+    for skips_hidden in [false, true] {
+        // The last pictures have 64 rounds of one reference, and tiles that are in none of them.
+        let few = TilesDesc::default().max_reference_bytes(4).skips_hidden(skips_hidden);
+        let Some(mut screen) = screen(|setup| setup.technique = few.into()) else { return };
+        for which in [0, 0, 1] {
+            let picture = screen.hair(&[&grooms[which]]);
+            assert!(picture.counters.dropped > 64, "{:?}", picture.counters);
+            assert!(picture.pixels().iter().zip(all[which].pixels()).all(|(some, every)| some.w <= every.w + 0.001));
+            screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
+        }
+    }
+}
+
 /// Three frames of two grooms: rounds come with the second one, and what was hidden in the one before. None where there is no adapter.
 fn three_frames(technique: TilesDesc, hair_output: bool) -> Option<Vec<(Vec<u8>, Counters)>> {
     let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];

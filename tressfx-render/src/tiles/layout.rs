@@ -111,15 +111,15 @@ pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_
     let (desc, memory) = (&tiles.desc, &tiles.memory);
     let references = &memory.references;
     let [nearest, farthest] = distances(view, draws);
-    let uniform = |stores, [first, end]: [u32; 2]| TilesUniform {
+    let uniform = |stores, round| TilesUniform {
         vertices: memory.vertices.count,
-        capacity: references.count,
+        capacity: references.capacity(round),
         stores,
         nearest,
         depth: farthest - nearest,
         closed_below: desc.closed_below,
-        first,
-        end,
+        first: references.first(round),
+        end: references.end(round),
         covered: references.covered(),
         rounds: references.rounds,
         window: references.window(),
@@ -131,8 +131,8 @@ pub(crate) fn uniforms(view: &View, draws: &[SectionDraw], tiles: &Tiles, skips_
         bin_groups: padded(memory.bin_grid(draws)),
         alloc_groups: padded(alloc_grid(view.size())),
     };
-    let rounds = (0..references.rounds).map(|round| uniform(1, references.round(round)));
-    std::iter::once(uniform(0, [0, u32::MAX])).chain(rounds).collect()
+    let rounds = (0..references.rounds).map(|round| uniform(1, round));
+    std::iter::once(uniform(0, 0)).chain(rounds).collect()
 }
 
 /// Vertices that sections take at most with the detail that they are drawn with.

@@ -134,24 +134,32 @@ impl References {
     const BYTES: u64 = 4;
 
     /// How many references all rounds have room for. In a round, tiles begin in the first half of the room, so that the last one of them
-    /// has the other half for itself.
+    /// has the other half for itself. In the last round they begin anywhere.
     pub(crate) fn covered(&self) -> u32 {
-        if self.rounds == 1 { self.count } else { self.rounds.saturating_mul(self.half()).min(MOST_COVERED) }
+        self.first(self.rounds - 1).saturating_add(self.count).min(MOST_COVERED)
     }
 
-    /// The first reference of a round, and the one after the last with which a tile may begin.
-    pub(crate) fn round(&self, round: u32) -> [u32; 2] {
-        if self.rounds == 1 { [0, u32::MAX] } else { [round, round + 1].map(|round| round.saturating_mul(self.half())) }
+    /// The first reference of a round.
+    pub(crate) fn first(&self, round: u32) -> u32 {
+        round.saturating_mul(self.window())
     }
 
-    /// References with which tiles may begin in a round.
+    /// The one after the last with which a tile may begin in a round. A tile that begins behind all that has room is blended in the last
+    /// round too, as one without hair: the composite draws it.
+    pub(crate) fn end(&self, round: u32) -> u32 {
+        if round + 1 == self.rounds { u32::MAX } else { self.first(round + 1) }
+    }
+
+    /// How many references have room in a round.
+    pub(crate) fn capacity(&self, round: u32) -> u32 {
+        self.count.min(self.covered().saturating_sub(self.first(round)))
+    }
+
+    /// References with which tiles may begin in a round before the last one.
     pub(crate) fn window(&self) -> u32 {
-        if self.rounds == 1 { u32::MAX } else { self.half() }
-    }
-
-    fn half(&self) -> u32 {
         (self.count / 2).max(1)
     }
+
 
     fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
         let buffer = storage(backend, "hair.render.references", Self::BYTES * u64::from(count))?;
@@ -345,10 +353,9 @@ impl Memory {
 
     /// Rounds in which so many references have room.
     fn rounds_for(&self, wanted: u64) -> u32 {
-        if wanted <= u64::from(self.references.count) {
-            return 1;
-        }
-        wanted.div_ceil(u64::from(self.references.half())).min(u64::from(MAX_ROUNDS)) as u32
+        let References { count, .. } = self.references;
+        let before_last = wanted.saturating_sub(count.into()).div_ceil(self.references.window().into());
+        (1 + before_last).min(MAX_ROUNDS.into()) as u32
     }
 
     /// Whether so many references take fewer rounds than there are.
