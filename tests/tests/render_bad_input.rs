@@ -237,7 +237,7 @@ fn strands_without_width_and_100_pixels_wide() {
 }
 
 /// Strands of two vertices that all lie within one pixel, and how many of them leave a fragment in it.
-fn in_one_pixel(count: u32) {
+fn in_one_pixel(count: u32, techniques: &[Technique]) {
     let mut random = Random(5);
     // The pixel is 0.029 wide where they are; its middle is half of that from the middle of the picture.
     let strand = |_| {
@@ -246,8 +246,7 @@ fn in_one_pixel(count: u32) {
     };
     let look = material().with(|m| (m.opacity, m.tip_opacity, m.variation) = (0.002, 0.002, 1.0));
     let groom = Groom::new(&(0..count).map(strand).collect::<Vec<_>>(), look);
-    let more_places = [4, 16, 64].map(|places| TilesDesc::default().places(places).into());
-    each(&[techniques(), more_places.into()].concat(), |name, screen, technique| {
+    each(techniques, |name, screen, technique| {
         let picture = sound(name, screen, &groom);
         let counters = picture.counters;
         // Mesa's CPU driver ends loops that run on: there a group of tiles ends before, and says what it has left out.
@@ -270,13 +269,24 @@ fn in_one_pixel(count: u32) {
 
 #[test]
 fn very_many_strands_in_one_pixel() {
-    in_one_pixel(30_000);
+    let more_places = [4, 16, 64].map(|places| TilesDesc::default().places(places).into());
+    in_one_pixel(30_000, &[techniques(), more_places.into()].concat());
 }
 
 #[test]
 #[ignore = "a minute on a CPU"]
 fn a_million_strands_in_one_pixel() {
-    in_one_pixel(1_000_000);
+    let (lists, mean, tiles) = (PpllDesc::default(), ShortCutDesc::default(), TilesDesc::default());
+    let each_method = [
+        lists.into(),
+        lists.cap(2).fill(RASTER).into(),
+        lists.skips_hidden(true).into(),
+        mean.into(),
+        mean.ordered(true).fill(RASTER).into(),
+        tiles.into(),
+        tiles.places(16).into(),
+    ];
+    in_one_pixel(1_000_000, &each_method);
 }
 
 #[test]
@@ -364,11 +374,15 @@ fn glass(pigment: Pigment, roughness: f32) -> FibreScattering {
 
 #[test]
 fn numbers_of_looks_and_lights_that_are_not_finite() {
-    let spoil: [fn(&mut Material, f32); 10] = [
+    type Spoil = fn(&mut Material, f32);
+    // What walks over segments are given, and what `shade` alone is given, which does not know of techniques.
+    let walked: [Spoil; 4] = [
         |m, bad| m.opacity = bad,
         |m, bad| m.tip_opacity = bad,
         |m, bad| m.fibre_radius = Some(bad),
         |m, bad| m.tip_width = bad,
+    ];
+    let shaded: [Spoil; 6] = [
         |m, bad| m.base_color = Vec3::splat(bad),
         |m, bad| m.variation = bad,
         |m, bad| m.primary.exponent = bad,
@@ -376,13 +390,20 @@ fn numbers_of_looks_and_lights_that_are_not_finite() {
         |m, bad| m.fibre = Some(glass(Pigment::Absorption(Vec3::splat(bad)), 0.3)),
         |m, bad| m.fibre = Some(glass(Pigment::Color, bad)),
     ];
-    each(&techniques(), |name, screen, _| {
-        for bad in [f32::NAN, f32::INFINITY, -1.0] {
+    let bad_numbers = [f32::NAN, f32::INFINITY, -1.0];
+    let hold = |spoil: &[Spoil], name: &str, screen: &mut Screen| {
+        for bad in bad_numbers {
             for (which, spoil) in spoil.iter().enumerate() {
                 let mut groom = hair();
                 spoil(&mut groom.material, bad);
                 sound(&format!("{name}, {bad} in parameter {which}"), screen, &groom);
             }
+        }
+    };
+    each(&techniques(), |name, screen, _| hold(&walked, name, screen));
+    each(&techniques()[..1], |name, screen, _| {
+        hold(&shaded, name, screen);
+        for bad in bad_numbers {
             let usual = screen.lights.clone();
             screen.lights.sky = Vec3::splat(bad);
             screen.lights.lights.push(Light::directional(Vec3::splat(bad), Vec3::splat(bad)));
