@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{compilers, driver, validation};
+use crate::{compilers, driver, programs, validation};
 
 /// Built-in grooms that the demo renders, and where the picture goes.
 const DEMO: [(&str, &str); 2] = [("builtin:long", "long.png"), ("builtin:curly", "curly.png")];
@@ -119,12 +119,6 @@ fn tressfx(profile: &str) -> Result<PathBuf, String> {
     Ok(built(profile))
 }
 
-/// Builds the program `tressfx` with all tests and says where it is. By itself it would be built once more: with tests, dependencies have other features.
-fn tressfx_with_tests() -> Result<PathBuf, String> {
-    step(&["test", "--workspace", "--no-run"])?;
-    Ok(built("debug"))
-}
-
 /// Where cargo leaves the program.
 fn built(profile: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
@@ -216,17 +210,18 @@ pub(crate) fn stress(words: &[&str]) -> Result<(), String> {
 pub(crate) fn test() -> Result<(), String> {
     step(&["fmt", "--all", "--check"])?;
     step(&["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"])?;
-    let tressfx = tressfx_with_tests()?;
+    println!("cargo test --workspace");
+    // With tests, dependencies have other features: the program `tressfx` is built with them, or it would be built once more.
+    let programs = programs::build(&mut cargo(&[]))?;
+    let tressfx = built("debug");
     driver::ensure(&tressfx)?;
     validation::ensure(&tressfx)?;
     compilers::ensure()?;
-    println!("cargo test --workspace");
-    // One run says all that fails.
-    run(cargo(&["test", "--workspace", "--quiet", "--no-fail-fast"]).env("TRESSFX_SHADER_COMPILERS", "required"))?;
     // Tests that read real grooms are ignored unless the grooms are there.
-    if std::env::var_os("TRESSFX_ASSETS").is_some() {
-        step(&["test", "--workspace", "--tests", "--quiet", "--no-fail-fast", "--", "--ignored"])?;
-    }
+    let ignored = std::env::var_os("TRESSFX_ASSETS").is_some().then_some("--include-ignored");
+    let words: Vec<&str> = ["--quiet"].into_iter().chain(ignored).collect();
+    programs::run(&programs, &words, &[("TRESSFX_SHADER_COMPILERS", "required")])?;
+    step(&["test", "--workspace", "--doc", "--quiet"])?;
     println!("cargo doc --workspace --no-deps");
     run(cargo(&["doc", "--workspace", "--no-deps", "--quiet"]).env("RUSTDOCFLAGS", "--deny warnings"))
 }

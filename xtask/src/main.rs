@@ -5,6 +5,7 @@ mod chore;
 mod compilers;
 mod driver;
 mod packages;
+mod programs;
 mod validation;
 
 use std::process::ExitCode;
