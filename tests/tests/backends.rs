@@ -19,9 +19,9 @@ use support::gpu;
 /// wait for it as raw Vulkan does.
 static ONE_TEST_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-const SIZE: [u32; 2] = [256, 144];
+const SIZE: [u32; 2] = [192, 108];
 const FRAMES: u32 = 4;
-const GROOMS: [&str; 5] = ["straight:1500:16", "wavy:1500:24", "curly:1200:48", "long:2000:32", "fur:4000:6"];
+const GROOMS: [&str; 5] = ["straight:700:16", "wavy:700:24", "curly:500:48", "long:900:32", "fur:2000:6"];
 
 /// Of the pixels, how many may differ.
 const DIFFERING: f64 = 1e-5;

@@ -108,9 +108,9 @@ fn the_same_bits_every_time_and_on_both_backends_whatever_the_order_of_sections(
 fn what_the_frame_before_tells_of_units_changes_no_bit() {
     let grooms = [
         Groom::wavy(60, 12, 1, varied()),
-        Groom::wavy(6000, 16, 6, varied()),
-        Groom::wavy(9000, 8, 2, faint()),
-        Groom::wavy(1500, 16, 3, varied()),
+        Groom::wavy(2500, 16, 6, varied()),
+        Groom::wavy(4000, 8, 2, faint()),
+        Groom::wavy(800, 16, 3, varied()),
     ];
     for (few_tiles, places) in [(0, 1), (10_000, 1), (0, 4), (10_000, 16), (0, 64)] {
         let technique = TilesDesc::default().few_tiles(few_tiles).places(places);

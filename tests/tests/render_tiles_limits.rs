@@ -39,27 +39,25 @@ fn what_has_no_room_is_counted_and_its_room_is_exact() {
 
 #[test]
 fn tiles_without_room_show_nothing_of_the_frame_before() {
-    let grooms = [Groom::wavy(400, 16, 1, material()), Groom::wavy(20, 16, 7, material())];
+    let grooms = [Groom::wavy(100, 8, 1, material()), Groom::wavy(20, 16, 7, material())];
     let Some(mut roomy) = screen(tiles) else { return };
     let all = grooms.each_ref().map(|groom| roomy.hair(&[groom]));
-    for skips_hidden in [false, true] {
-        // The last pictures have 64 rounds of one reference, and tiles that are in none of them.
-        let few = TilesDesc::default().max_reference_bytes(4).skips_hidden(skips_hidden);
-        let Some(mut screen) = screen(|setup| setup.technique = few.into()) else { return };
-        for which in [0, 0, 1] {
-            let picture = screen.hair(&[&grooms[which]]);
-            assert!(picture.counters.dropped > 64, "{:?}", picture.counters);
-            assert!(picture.pixels().iter().zip(all[which].pixels()).all(|(some, every)| some.w <= every.w + 0.001));
-            screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
-        }
+    // The last pictures have 64 rounds of one reference, and tiles that are in none of them.
+    let few = TilesDesc::default().max_reference_bytes(4);
+    let Some(mut screen) = screen(|setup| setup.technique = few.into()) else { return };
+    for which in [0, 0, 1] {
+        let picture = screen.hair(&[&grooms[which]]);
+        assert!(picture.counters.dropped > 64, "{:?}", picture.counters);
+        assert!(picture.pixels().iter().zip(all[which].pixels()).all(|(some, every)| some.w <= every.w + 0.001));
+        screen.renderer.grow_to_measured(&mut *screen.backend, &picture.counters).unwrap();
     }
 }
 
 /// Three frames of two grooms: rounds come with the second one, and what was hidden in the one before. None where there is no adapter.
 fn three_frames(technique: TilesDesc, hair_output: bool) -> Option<Vec<(Vec<u8>, Counters)>> {
-    let grooms = [Groom::wavy(1500, 16, 3, varied()), Groom::wavy(200, 9, 5, material())];
+    let grooms = [Groom::wavy(300, 16, 3, varied()), Groom::wavy(60, 9, 5, material())];
     let mut screen = screen(|setup| {
-        (setup.technique, setup.size, setup.hair_output) = (technique.into(), [125, 90], hair_output);
+        (setup.technique, setup.size, setup.hair_output) = (technique.into(), [93, 61], hair_output);
     })?;
     let mut frame = || {
         let picture = screen.hair(&grooms.each_ref());
@@ -77,9 +75,11 @@ fn with_and_without_output(kinds: &[TilesDesc]) -> impl Iterator<Item = (TilesDe
 #[test]
 fn few_tiles_are_divided_among_more_groups_and_the_picture_is_the_same() {
     let plain = TilesDesc::default();
-    let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true), plain.max_reference_bytes(40_000)];
+    let kinds = [plain, plain.places(4), plain.places(16), plain.skips_hidden(true), plain.max_reference_bytes(8_000)];
     for (kind, output) in with_and_without_output(&kinds) {
         let Some(undivided) = three_frames(kind.few_tiles(0), output) else { return };
+        let is_bounded = kind.max_reference_bytes < plain.max_reference_bytes;
+        assert_eq!(undivided[0].1.dropped > 0, is_bounded, "then it takes rounds: {:?}", undivided[0].1);
         for few in [20, u32::MAX] {
             let divided = three_frames(kind.few_tiles(few), output).unwrap();
             for (frame, (first, seen)) in undivided.iter().zip(&divided).enumerate() {

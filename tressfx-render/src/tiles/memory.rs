@@ -160,7 +160,6 @@ impl References {
         (self.count / 2).max(1)
     }
 
-
     fn new(backend: &mut dyn Backend, count: u32) -> Result<Self> {
         let buffer = storage(backend, "hair.render.references", Self::BYTES * u64::from(count))?;
         Ok(Self { buffer, count, rounds: 1 })
