@@ -306,11 +306,29 @@ pub const REAL: [&str; 6] = [
 /// # Panics
 /// If the file cannot be read.
 pub fn real(path: &str) -> Option<Strands> {
+    Some(strands_of(read(path)?, 0))
+}
+
+fn read(path: &str) -> Option<HairAsset> {
     let Some(folder) = std::env::var_os("TRESSFX_ASSETS").map(PathBuf::from) else {
         crate::suite::say_skipped(path, "TRESSFX_ASSETS is not set");
         return None;
     };
-    Some(strands_of(tressfx_asset::read(folder.join(path)).expect("the groom reads"), 0))
+    Some(tressfx_asset::read(folder.join(path)).expect("the groom reads"))
+}
+
+/// A real groom of [`REAL`], of which no more than so many strands; `None`, visibly, where TRESSFX_ASSETS is not set.
+///
+/// # Panics
+/// If the file cannot be read.
+pub fn real_part(path: &str, most: u32) -> Option<Strands> {
+    let all = real(path)?;
+    if all.guides <= most {
+        return Some(all);
+    }
+    let options =
+        StrandOptions { follows: Some(0), metres_per_unit: Some(all.metres_per_unit), ..StrandOptions::default() };
+    Some(Strands::new(&sampled(&read(path)?, most), &options).expect("the asset is fine"))
 }
 
 /// So many strands of an asset, evenly through the file.

@@ -7,9 +7,8 @@ use std::f64::consts::TAU;
 use glam::{DVec3, Quat, Vec3};
 use tressfx_asset::builtin::Builtin;
 use tressfx_conformance::rod::G;
-use tressfx_conformance::sim::{REAL, Rig, lengths, sampled, strands_of, wide};
-use tressfx_core::asset::HairAsset;
-use tressfx_core::strands::{StrandOptions, Strands};
+use tressfx_conformance::sim::{REAL, Rig, lengths, real_part, strands_of, wide};
+use tressfx_core::strands::Strands;
 use tressfx_core::view::Pose;
 use tressfx_sim::reference::Simulation;
 use tressfx_sim::{ClockParams, SectionDesc, SimParams, Solver, StepInput};
@@ -21,20 +20,13 @@ const BEND: f64 = 0.1;
 /// So many alternating bends in a row are a zigzag.
 const ZIGZAG: usize = 6;
 
-/// The grooms of a name; `None`, visibly, where TRESSFX_ASSETS is not set. Of the mohawk an even sample in the unit of its file.
+/// The grooms of a name; `None`, visibly, where TRESSFX_ASSETS is not set. Of the mohawk an even sample.
 fn groom(name: &str, count: u32) -> Option<Strands> {
     if name != "mohawk" {
         let builtin = Builtin { strands: count, ..name.parse().expect("a built-in groom") };
         return Some(strands_of(builtin.asset(), 0));
     }
-    let Some(folder) = std::env::var_os("TRESSFX_ASSETS") else {
-        tressfx_conformance::suite::say_skipped(name, "TRESSFX_ASSETS is not set");
-        return None;
-    };
-    let asset: HairAsset = tressfx_asset::read(std::path::Path::new(&folder).join(REAL[0])).expect("the groom reads");
-    let metres_per_unit = Some(strands_of(asset.clone(), 0).metres_per_unit);
-    let options = StrandOptions { follows: Some(0), metres_per_unit, ..StrandOptions::default() };
-    Some(Strands::new(&sampled(&asset, count), &options).expect("the asset is fine"))
+    real_part(REAL[0], count)
 }
 
 /// A frame that ends at a time, until the shake ends after a second.

@@ -17,7 +17,7 @@ use tressfx_core::view::{Camera, View};
 use tressfx_render::{FibreScattering, Highlight, Material, ShadowDesc, Technique};
 
 use hair::Grooms;
-use scenes::{Eye, Look, SCENES, Scene, Solid};
+use scenes::{Eye, Look, OTHERS, SCENES, Scene, Solid};
 use support::gpu;
 
 /// Frames in which pools grow to what was measured. Where the technique is chosen by measurements, so many are asked for.
@@ -209,8 +209,8 @@ fn difference(one: &Picture, other: &Picture, is_exact: bool) -> Option<String> 
     (count * DIFFERING > (width * height) as usize).then(|| format!("{count} pixels differ"))
 }
 
-#[test]
-fn each_scene_by_each_technique() {
+/// Holds each scene by each technique, and by so many of what they can do beside.
+fn hold(beside: usize) {
     assert!(SCENES.len() >= 60, "{} scenes", SCENES.len());
     let Some(wgpu) = gpu() else { return };
     // Whatever the validation layer says fails the run of a list.
@@ -221,10 +221,10 @@ fn each_scene_by_each_technique() {
     // On the CPU both backends compile the same code; on GPUs two compilers may round in two ways.
     let is_exact = screens[0].backend.caps().is_cpu;
     let (mut grooms, mut wrong) = (Grooms::default(), Vec::new());
-    for scene in SCENES {
+    for (index, scene) in SCENES.iter().enumerate() {
         let stage = Stage::new(&mut grooms, scene);
         let empty = stage.empty(&mut screens[0]);
-        for (technique, desc) in scene.setting.techniques() {
+        for (technique, desc) in scene.setting.techniques(index, beside) {
             let chooses = technique == "auto" && scene.setting.grows_dense;
             let is_for_tiles = technique.starts_with("tiles") || (technique == "auto" && scene.setting.is_for_tiles());
             let mut say = |fault| wrong.push(format!("{}, {technique}: {fault}", scene.name));
@@ -240,4 +240,16 @@ fn each_scene_by_each_technique() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Two of what techniques can do beside, in turns.
+#[test]
+fn each_scene_by_each_technique() {
+    hold(2);
+}
+
+#[test]
+#[ignore = "minutes on a CPU"]
+fn each_scene_by_each_technique_with_all_that_it_can_do() {
+    hold(OTHERS);
 }

@@ -114,14 +114,24 @@ const ENDLESS: Setting = Setting { closed_below: Some(0.0), ..USUAL };
 const EARLY: Setting = Setting { closed_below: Some(0.3), ..USUAL };
 const DENSE: Setting = Setting { grows_dense: true, ..USUAL };
 
+/// What techniques can do beside, and how far apart those of one scene are: no two of a scene are the same.
+pub(crate) const OTHERS: usize = 7;
+const OTHER_STRIDE: usize = 3;
+
 impl Setting {
     /// Whether what is chosen automatically is tiles: in the end, or from the beginning, since lists have far too few nodes.
     pub(crate) fn is_for_tiles(&self) -> bool {
         self.grows_dense || self.nodes.is_some()
     }
 
-    /// Every technique, so set.
-    pub(crate) fn techniques(&self) -> [(&'static str, Technique); 15] {
+    /// Every technique, so set, and behind them what each can do beside: so many of these, another one first for each scene.
+    pub(crate) fn techniques(&self, scene: usize, beside: usize) -> Vec<(&'static str, Technique)> {
+        let [techniques, others] = self.all();
+        let chosen = (0..beside).map(|i| others[(scene + OTHER_STRIDE * i) % others.len()]);
+        techniques.into_iter().chain(chosen).collect()
+    }
+
+    fn all(&self) -> [Vec<(&'static str, Technique)>; 2] {
         let &Self { k, tail, cap, layers, .. } = self;
         let mut lists = PpllDesc::default().k(k).tail(tail).cap(cap);
         lists.max_node_bytes = self.nodes.unwrap_or(lists.max_node_bytes);
@@ -130,23 +140,26 @@ impl Setting {
         tiles.closed_below = self.closed_below.unwrap_or(tiles.closed_below);
         let (mean, auto) = (ShortCutDesc::default().k(layers), AutoDesc::default().lists(lists).tiles(tiles));
         let dense = if self.grows_dense { 0.1 } else { auto.dense };
-        [
+        let techniques = vec![
             ("lists", lists.into()),
             ("lists, raster", lists.fill(Fill::Raster).into()),
-            ("lists, four places", lists.places(4).into()),
-            ("lists, 16 places, raster", lists.places(16).fill(Fill::Raster).into()),
             ("mean", mean.into()),
             ("mean, raster", mean.fill(Fill::Raster).into()),
             ("in order", mean.ordered(true).into()),
             ("in order, raster", mean.ordered(true).fill(Fill::Raster).into()),
+            ("tiles", tiles.into()),
+            ("auto", auto.dense(dense).tiles_on_cpu(true).into()),
+        ];
+        let others = vec![
+            ("lists, four places", lists.places(4).into()),
+            ("lists, 16 places, raster", lists.places(16).fill(Fill::Raster).into()),
             ("lists, nothing hidden", lists.skips_hidden(true).into()),
             ("mean, nothing hidden, raster", mean.skips_hidden(true).fill(Fill::Raster).into()),
-            ("tiles", tiles.into()),
             ("tiles, four places", tiles.places(4).skips_hidden(true).into()),
             ("tiles, 16 places", tiles.places(16).into()),
             ("tiles, 64 places", tiles.places(64).into()),
-            ("auto", auto.dense(dense).tiles_on_cpu(true).into()),
-        ]
+        ];
+        [techniques, others]
     }
 }
 
