@@ -7,7 +7,7 @@ use glam::{DVec4, Vec3};
 use tressfx_conformance::render::{Groom, NO_HAIR, Picture, Screen, Setup};
 use tressfx_core::backend::{DepthOrder, Format, TextureDesc};
 use tressfx_core::pass::PassList;
-use tressfx_core::view::{View, Viewport};
+use tressfx_core::view::{Camera, View, Viewport};
 use tressfx_render::{
     AutoDesc, DrawError, Fill, HAIR_FORMAT, PpllDesc, SectionDraw, ShadedStrands, ShortCutDesc, Tail, Targets,
     Technique, TilesDesc, ViewDraw, reference,
@@ -46,6 +46,12 @@ fn techniques() -> Vec<Technique> {
 fn with(technique: impl Into<Technique>, hair_output: bool) -> impl FnOnce(&mut Setup) {
     let technique = technique.into();
     move |setup| (setup.technique, setup.hair_output) = (technique, hair_output)
+}
+
+/// The view of a screen with depth in another order.
+fn in_order(depth: DepthOrder) -> View {
+    let setup = Setup::default();
+    Camera { depth, ..setup.camera }.view(setup.size).unwrap()
 }
 
 /// Depth and alpha of the fragments of each pixel of a view, the nearest first.
@@ -127,17 +133,16 @@ fn alphas(picture: &Picture) -> Vec<f64> {
 #[test]
 fn depth_and_coverage_are_as_in_f64_and_the_picture_is_the_same() {
     let grooms = [("dense", Groom::wavy(300, 16, 3, varied())), ("faint", Groom::wavy(120, 16, 5, faint()))];
-    for (technique, order) in techniques().into_iter().flat_map(|technique| ORDERS.map(|order| (technique, order))) {
+    for technique in techniques() {
         // Two drivers may round in two ways: the picture without the output comes from the same one.
         for (backend, same) in backends().into_iter().zip(backends()) {
-            let [mut screen, mut plain] = [(backend, true), (same, false)].map(|(backend, hair_output)| {
-                Screen::new(backend, |setup| {
-                    with(technique, hair_output)(setup);
-                    setup.camera.depth = order;
-                })
-            });
-            for (groom_name, groom) in &grooms {
+            let [mut screen, mut plain] = [(backend, true), (same, false)]
+                .map(|(backend, hair_output)| Screen::new(backend, with(technique, hair_output)));
+            for (order, (groom_name, groom)) in
+                ORDERS.iter().flat_map(|order| grooms.iter().map(|groom| (*order, groom)))
+            {
                 let name = format!("{technique:?}, {order:?}, {groom_name}");
+                [&mut screen, &mut plain].into_iter().for_each(|screen| screen.view = in_order(order));
                 let picture = screen.hair(&[groom]);
                 assert!(picture.bytes == plain.hair(&[groom]).bytes, "{name}: the picture is the same");
                 let far = order.far();
@@ -154,13 +159,9 @@ fn depth_and_coverage_are_as_in_f64_and_the_picture_is_the_same() {
 fn depth_is_that_of_the_scene_before_which_hair_is_seen() {
     let groom = Groom::wavy(300, 16, 2, varied());
     for technique in techniques() {
+        let Some(mut screen) = screen(with(technique, true)) else { return };
         for order in ORDERS {
-            let Some(mut screen) = screen(|setup| {
-                with(technique, true)(setup);
-                setup.camera.depth = order;
-            }) else {
-                return;
-            };
+            screen.view = in_order(order);
             let hair = screen.scene(&[&wall(0.0, 0.1)], &[&groom]).hair;
             let depth = screen.depth();
             let pixels = fragments(&screen, &groom, &|[x, y]| depth[(y * 96 + x) as usize]);

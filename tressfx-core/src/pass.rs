@@ -323,4 +323,12 @@ mod tests {
         }
         assert!(Grid::for_threads(0, 64).is_empty());
     }
+
+    #[test]
+    fn each_plane_of_a_grid_has_the_groups_of_one() {
+        let grid = Grid::for_threads(65_535 * 64 + 1, 64);
+        let Grid([x, y, z]) = grid.planes(5);
+        assert_eq!((Grid([x, y, 1]), z), (grid, 5));
+        assert!(grid.planes(0).is_empty() && Grid::for_threads(0, 64).planes(5).is_empty());
+    }
 }

@@ -6,6 +6,7 @@ use std::collections::{BTreeSet, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 use serde_json::Value;
 
@@ -82,11 +83,30 @@ fn languages(words: &[&str]) -> &'static str {
     if words.contains(&"--composite") { LANGUAGES.strip_suffix(",essl").expect("the last one") } else { LANGUAGES }
 }
 
-/// Writes the kernels of a variant and reads their descriptions.
-fn emit(folder: &Path, words: &[&str]) -> Vec<Value> {
-    let output = tressfx(folder, &[words, &["--emit", languages(words), "--out", "out"]].concat());
+/// The kernels of a variant.
+struct Written {
+    words: &'static [&'static str],
+    /// Where they are.
+    folder: PathBuf,
+    /// Their descriptions.
+    entries: Vec<Value>,
+}
+
+/// All variants, written once for all tests.
+static WRITTEN: LazyLock<Vec<Written>> = LazyLock::new(|| {
+    let folder = folder("written");
+    let write = |(number, words): (usize, &&'static [&'static str])| {
+        let out = format!("out{number}");
+        Written { words, entries: emit(&folder, words, &out), folder: folder.join(out) }
+    };
+    VARIANTS.iter().enumerate().map(write).collect()
+});
+
+/// Writes the kernels of a variant into a folder in another one, and reads their descriptions.
+fn emit(folder: &Path, words: &[&str], out: &str) -> Vec<Value> {
+    let output = tressfx(folder, &[words, &["--emit", languages(words), "--out", out]].concat());
     assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
-    let entries = fs::read(folder.join("out/bindings.json")).unwrap();
+    let entries = fs::read(folder.join(out).join("bindings.json")).unwrap();
     serde_json::from_slice::<Value>(&entries).unwrap().as_array().unwrap().clone()
 }
 
@@ -100,16 +120,14 @@ fn file_of(entry: &Value, language: &str) -> String {
 
 #[test]
 fn every_kernel_is_written_in_every_language_with_its_bindings() {
-    let folder = folder("written");
     let (mut labels, mut features) = (BTreeSet::new(), BTreeSet::new());
-    for words in VARIANTS {
-        let entries = emit(&folder, words);
+    for Written { words, folder, entries } in WRITTEN.iter() {
         let files: BTreeSet<_> = entries.iter().map(|entry| file_of(entry, "wgsl")).collect();
         assert_eq!(files.len(), entries.len(), "each entry point has a file of its own: {files:?}");
-        for entry in &entries {
+        for entry in entries {
             labels.insert(text(entry, "label").to_owned());
             features.extend(entry["features"].as_object().unwrap().iter().map(|(name, on)| format!("{name} {on}")));
-            languages(words).split(',').for_each(|language| check_text(&folder, entry, language));
+            languages(words).split(',').for_each(|language| check_text(folder, entry, language));
         }
     }
     assert_eq!(labels, labels_of_kernels());
@@ -160,7 +178,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
 /// Every binding stands in the text, with its name in the declaration that says where it is.
 fn check_text(folder: &Path, entry: &Value, language: &str) {
     let file = file_of(entry, language);
-    let code = fs::read(folder.join("out").join(&file)).unwrap();
+    let code = fs::read(folder.join(&file)).unwrap();
     if language == "spirv" {
         assert_eq!(code[..4], 0x0723_0203_u32.to_ne_bytes(), "{file}");
         return;
@@ -219,18 +237,17 @@ fn labels_of_kernels() -> BTreeSet<String> {
 
 #[test]
 fn compilers_take_every_kernel() {
-    let folder = folder("compiled");
     let compilers: Vec<_> = Compiler::ALL.into_iter().filter(|&compiler| installed(compiler)).collect();
     // Most kernels are the same in many variants.
     let mut seen = HashSet::new();
-    for words in VARIANTS {
-        for entry in emit(&folder, words) {
+    for Written { words, folder, entries } in WRITTEN.iter() {
+        for entry in entries {
             for &compiler in compilers.iter().filter(|compiler| !entry["languages"][compiler.language()].is_null()) {
-                let code = fs::read(folder.join("out").join(file_of(&entry, compiler.language()))).unwrap();
+                let code = fs::read(folder.join(file_of(entry, compiler.language()))).unwrap();
                 if !seen.insert((compiler.language(), code)) {
                     continue;
                 }
-                compile(compiler, &folder, &entry).unwrap_or_else(|message| panic!("{words:?}: {message}"));
+                compile(compiler, folder, entry).unwrap_or_else(|message| panic!("{words:?}: {message}"));
             }
         }
     }
@@ -238,7 +255,7 @@ fn compilers_take_every_kernel() {
 
 fn compile(compiler: Compiler, folder: &Path, entry: &Value) -> Result<(), String> {
     let written = &entry["languages"][compiler.language()];
-    let file = folder.join("out").join(text(written, "file"));
+    let file = folder.join(text(written, "file"));
     compiler.compile(&file, text(entry, "stage"), text(written, "entry_point"))
 }
 
@@ -253,9 +270,10 @@ fn what_gl_es_cannot_do_is_said() {
 #[test]
 fn compilers_refuse_a_broken_kernel() {
     let folder = folder("broken");
+    let out = folder.join("out");
     for compiler in Compiler::ALL.into_iter().filter(|&compiler| installed(compiler)) {
-        let entries = emit(&folder, &["--kernel", "hair.sim.tangents"]);
-        let path = folder.join("out").join(file_of(&entries[0], compiler.language()));
+        let entries = emit(&folder, &["--kernel", "hair.sim.tangents"], "out");
+        let path = out.join(file_of(&entries[0], compiler.language()));
         let mut code = fs::read(&path).unwrap();
         match compiler.language() {
             // Its last instruction, the end of a function, goes.
@@ -263,7 +281,7 @@ fn compilers_refuse_a_broken_kernel() {
             _ => code = String::from_utf8(code).unwrap().replace("normalize(", "normalise(").into_bytes(),
         }
         fs::write(&path, code).unwrap();
-        let message = compile(compiler, &folder, &entries[0]).expect_err(compiler.language());
+        let message = compile(compiler, &out, &entries[0]).expect_err(compiler.language());
         assert!(message.contains("hair.sim.tangents"), "{message}");
     }
 }
@@ -271,7 +289,7 @@ fn compilers_refuse_a_broken_kernel() {
 #[test]
 fn one_kernel_is_chosen_by_its_name() {
     let folder = folder("chosen");
-    let entries = emit(&folder, &["builtin:fur:40:3", "--solver", "tressfx", "--kernel", "hair.sim.tressfx"]);
+    let entries = emit(&folder, &["builtin:fur:40:3", "--solver", "tressfx", "--kernel", "hair.sim.tressfx"], "out");
     let files: Vec<_> = entries.iter().map(|entry| file_of(entry, "hlsl")).collect();
     let expected = ["", ".roots"].map(|roots| format!("hair.sim.tressfx.capsules.global_shape{roots}.comp.hlsl"));
     assert_eq!(files, expected);
