@@ -99,6 +99,35 @@ fn what_looks_for_hidden_hair() {
     }
 }
 
+/// Several kinds of it at once: none goes while another one cannot be made smaller.
+#[test]
+fn tiles_that_give_back_memory() {
+    let desc = RenderDesc::new([640, 360], Format::Rgba16F).technique(TilesDesc::default());
+    let many = Counters { wanted: 1 << 20, tiles_with_hair: 3000, vertices: 1 << 20, ..Counters::default() };
+    // Colours, references, and two buffers of vertices.
+    for (creations, succeeds) in [(0, false), (1, false), (2, false), (3, false), (4, true)] {
+        let mut backend = backend();
+        let mut renderer = HairRenderer::new(&mut backend, &desc).unwrap();
+        renderer.draw(&mut PassList::new(), &[], &[]).unwrap();
+        assert!(renderer.grow_to_measured(&mut backend, &many).unwrap());
+        let bytes = renderer.technique_bytes();
+        let refused = (0..500).any(|_| {
+            renderer.draw(&mut PassList::new(), &[], &[]).unwrap();
+            let before = (backend.living(), renderer.technique_bytes());
+            backend.after = Some(creations);
+            let measured = renderer.grow_to_measured(&mut backend, &Counters::default());
+            assert_eq!(measured.is_err(), backend.after.take().is_none());
+            let same = (backend.living(), renderer.technique_bytes()) == before;
+            assert!(same || measured.is_ok(), "after {creations} creations");
+            measured.is_err()
+        });
+        assert_eq!(refused, !succeeds, "after {creations} creations");
+        assert!(refused || renderer.technique_bytes() < bytes / 2, "all of it is smaller");
+        renderer.destroy(&mut backend);
+        assert_eq!(backend.living(), (0, 0));
+    }
+}
+
 #[test]
 fn a_renderer_its_size_and_its_sections() {
     let mut backend = backend();

@@ -150,6 +150,32 @@ fn lights_beyond_eight_take_no_pass_and_no_memory() {
     assert_eq!(frame(&all), (four, bytes));
 }
 
+/// It may be refused, and its list thrown away.
+#[test]
+fn what_was_cast_counts_for_the_next_frame_alone() {
+    let Some(mut screen) = shadowed(DESC()) else { return };
+    let groom = Groom::wavy(50, 8, 1, Material::default());
+    let strands = screen.section(&mut PassList::new(), &groom);
+    let draws = [SectionDraw::new(&strands, &groom.material, groom.pose)];
+    let (view, lights, targets) = (screen.view, screen.lights.clone(), screen.targets());
+    let seen = ViewDraw::new(&view, &lights, targets);
+    let refused = ViewDraw::new(&view, &lights, targets.hair(targets.color));
+    let renderer = &mut screen.renderer;
+    let mut drawn = |is_cast: bool, views: &[ViewDraw]| {
+        let mut list = PassList::new();
+        if is_cast {
+            renderer.cast(&mut PassList::new(), &lights, &draws).unwrap();
+        }
+        let done = renderer.draw(&mut list, views, &draws);
+        done.map(|()| list.labels().filter(|label| label.starts_with("hair.render.shadow_")).count())
+    };
+    let all = drawn(false, &[seen]).unwrap();
+    assert!(all > 3 && drawn(true, &[seen]).unwrap() == 0, "{all} passes of shadows");
+    assert_eq!(drawn(false, &[seen]).unwrap(), all);
+    drawn(true, &[refused]).unwrap_err();
+    assert_eq!(drawn(false, &[seen]).unwrap(), all, "those of the frame that was refused are not there");
+}
+
 fn is_shaded_as_in_f64(screen: &mut Screen, material: Material) {
     let groom = Groom::wavy(500, 16, 1, material);
     let mut list = PassList::new();

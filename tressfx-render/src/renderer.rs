@@ -365,6 +365,8 @@ impl HairRenderer {
         views: &[ViewDraw],
         draws: &[SectionDraw],
     ) -> std::result::Result<(), DrawError> {
+        // Also where nothing is drawn after all: what was cast counts for this frame alone.
+        let cast = self.cast.take();
         self.check(views, draws)?;
         let (draws, drawn) = reach::split(views, draws, self.shadows.is_some());
         let (casting, draws) = (&draws, &draws[..drawn.sections]);
@@ -377,7 +379,6 @@ impl HairRenderer {
         self.order.begin(list, views.len(), draws);
         self.shade.begin();
         self.velocity.iter_mut().for_each(Velocity::begin_frame);
-        let cast = self.cast.take();
         if cast.is_none() {
             self.shadows.iter_mut().for_each(Shadows::begin);
         }

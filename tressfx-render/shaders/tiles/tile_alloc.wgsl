@@ -91,7 +91,8 @@ fn list_tile(tile: u32, slot: u32, first: u32, count: u32) {
     if slot >= tiles.slots {
         infos[tile].first = NOWHERE;
         infos[tile].waiting = 0u;
-        atomicAdd(&state.counters.dropped, count);
+        // Those behind all rounds are counted by `tile_blend`.
+        atomicAdd(&state.counters.dropped, min(first + count, tiles.covered) - min(first, tiles.covered));
         return;
     }
     infos[tile].first = first;

@@ -68,7 +68,7 @@ struct Job {
     info: TileInfo,
     // A bit for each part of the quarter that is to be blended by the group in this round.
     parts: u32,
-    // 1 for one group of each tile.
+    // 1 for one group of each tile of the round.
     is_first: u32,
 }
 
@@ -118,7 +118,7 @@ fn job_in(tile: u32, number: u32, groups: u32) -> Job {
     info.slot = infos[tile].slot;
     let waiting = (atomicLoad(&infos[tile].waiting) >> (PARTS * quarter)) & parts;
     let is_now = info.first >= tiles.first && info.first < tiles.end;
-    return Job(tile, quarter, info, select(0u, waiting, is_now), u32(number == 0u));
+    return Job(tile, quarter, info, select(0u, waiting, is_now), u32(is_now && number == 0u));
 }
 
 // The part of a quarter in which a pixel is.
@@ -469,7 +469,7 @@ fn count_dropped(group: u32) {
         state.counters.wanted = max(state.counters.wanted, queue.references);
         atomicAdd(&state.counters.dropped, max(queue.references, tiles.covered) - tiles.covered);
     }
-    if tiles.end != 0xffffffffu && job.is_first == 1u && job.parts != 0u {
+    if tiles.end != 0xffffffffu && job.is_first == 1u {
         let end = min(bins[(SLICES - 1u) * tile_count() + job.tile], tiles.covered) - tiles.first;
         atomicAdd(&state.counters.dropped, max(end, tiles.capacity) - tiles.capacity);
     }

@@ -329,23 +329,26 @@ impl Memory {
         backend: &mut dyn Backend,
         Wanted { kept: references, tiles, vertices }: Wanted,
     ) -> Result<()> {
-        if is_surplus(self.screen.resolved.slots.into(), tiles.max(LEAST_SLOTS.into()), SURPLUS) {
-            let slots = times(tiles, SETTLED).max(LEAST_SLOTS.into()).min(self.most_slots()) as u32;
-            let colors = self.screen.resolved.more_colors(backend, slots)?;
+        let fewer = |room: u32, needed: u64, least: u32, most: u64| {
+            let is_surplus = is_surplus(room.into(), needed.max(least.into()), SURPLUS);
+            let count = times(needed, SETTLED).max(least.into()).min(most) as u32;
+            (is_surplus && count < room).then_some(count)
+        };
+        let slots = fewer(self.screen.resolved.slots, tiles, LEAST_SLOTS, self.most_slots());
+        let references = fewer(self.references.count, references, LEAST_REFERENCES, self.most_references.into());
+        let vertices = fewer(self.vertices.count, vertices, LEAST_VERTICES, self.most_vertices.into());
+        // All are made before one is replaced: what cannot be made leaves all as it was.
+        let colors = slots.map(|slots| self.screen.resolved.more_colors(backend, slots)).transpose()?;
+        let references = references.map(|count| References::new(backend, count)).transpose()?;
+        let vertices = vertices.map(|count| Vertices::new(backend, count)).transpose()?;
+        if let (Some(colors), Some(slots)) = (colors, slots) {
             self.screen.replace_colors(backend, colors, slots);
         }
-        let wanted = times(references, SETTLED).max(LEAST_REFERENCES.into());
-        let count = wanted.min(self.most_references.into()) as u32;
-        let shrinks = count < self.references.count
-            && is_surplus(self.references.count.into(), references.max(LEAST_REFERENCES.into()), SURPLUS);
-        let smaller = if shrinks { Some(References::new(backend, count)?) } else { None };
-        if is_surplus(self.vertices.count.into(), vertices.max(LEAST_VERTICES.into()), SURPLUS) {
-            let count = times(vertices, SETTLED).max(LEAST_VERTICES.into());
-            let smaller = Vertices::new(backend, count.min(self.most_vertices.into()) as u32)?;
-            self.replace_vertices(backend, smaller);
-        }
-        if let Some(smaller) = smaller {
+        if let Some(smaller) = references {
             backend.destroy(std::mem::replace(&mut self.references, smaller).buffer.into());
+        }
+        if let Some(smaller) = vertices {
+            self.replace_vertices(backend, smaller);
         }
         Ok(())
     }
