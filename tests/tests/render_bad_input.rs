@@ -274,7 +274,6 @@ fn very_many_strands_in_one_pixel() {
 }
 
 #[test]
-#[ignore = "a minute on a CPU"]
 fn a_million_strands_in_one_pixel() {
     let (lists, mean, tiles) = (PpllDesc::default(), ShortCutDesc::default(), TilesDesc::default());
     let each_method = [

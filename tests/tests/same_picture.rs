@@ -242,14 +242,8 @@ fn hold(beside: usize) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Two of what techniques can do beside, in turns.
+/// Two of what techniques can do beside, in turns; all of it where `TRESSFX_LONG_TESTS` is set, which takes a quarter of an hour on a CPU.
 #[test]
 fn each_scene_by_each_technique() {
-    hold(2);
-}
-
-#[test]
-#[ignore = "minutes on a CPU"]
-fn each_scene_by_each_technique_with_all_that_it_can_do() {
-    hold(OTHERS);
+    hold(if std::env::var_os("TRESSFX_LONG_TESTS").is_some() { OTHERS } else { 2 });
 }
