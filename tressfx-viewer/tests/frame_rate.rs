@@ -61,5 +61,5 @@ fn tips_of_the_mohawk_are_where_they_are_at_any_frame_rate() {
 
 #[test]
 fn tips_of_built_in_grooms_are_where_they_are_at_any_frame_rate() {
-    ["builtin:long:100", "builtin:curly:100"].into_iter().for_each(|groom| agrees(groom, &["shake", "turn", "walk"]));
+    ["builtin:long:200", "builtin:curly:200"].into_iter().for_each(|groom| agrees(groom, &["shake", "turn", "walk"]));
 }
