@@ -9,7 +9,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::{Draw, Load, PassList, RasterPass};
 use tressfx_core::shader::{RasterPipeline, Shader, ShaderSource, Specialization};
 use tressfx_core::view::View;
-use tressfx_render::{Light, Lights, Targets};
+use tressfx_render::{Light, Lights, ShadowDesc, Targets};
 
 const LABEL: Label = "test.scene";
 
@@ -112,6 +112,11 @@ impl ScenePass {
         }
         list.raster(pass);
     }
+}
+
+/// Shadows with few cells: on a CPU the usual ones take longer than the hair of small scenes.
+pub fn coarse_shadows() -> ShadowDesc {
+    ShadowDesc::default().texels(96, 32).cells(24)
 }
 
 /// Light from three sides.

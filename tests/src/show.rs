@@ -10,13 +10,13 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::{Camera, View};
 use tressfx_render::{
-    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, ShadowDesc, StrandInfo, Targets,
-    Technique, ViewDraw,
+    Counters, HairRenderer, Lights, Material, RenderDesc, SectionDraw, ShadedStrands, StrandInfo, Targets, Technique,
+    ViewDraw,
 };
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, Solver};
 
 use crate::run_and_read;
-use crate::scene::{SceneMesh, ScenePass, lights};
+use crate::scene::{SceneMesh, ScenePass, coarse_shadows, lights};
 use crate::sim::Motion;
 
 /// What the colour target holds: bytes as a screen takes them.
@@ -125,9 +125,7 @@ impl<B: Run> Show<B> {
         let meshes = scene.mesh.iter().map(|mesh| SceneMesh::new(gpu, &mut uploads, mesh).expect("a mesh")).collect();
         let section = ShadedStrands::new(gpu, sim.buffers()[0], scene.info.clone());
         let section = section.expect("a section");
-        // Coarse: on a CPU the usual cells take longer than the hair of these scenes.
-        let shadows = ShadowDesc::default().texels(96, 32).cells(24);
-        let desc = RenderDesc::new(scene.size, TARGET).technique(scene.technique).shadows(shadows);
+        let desc = RenderDesc::new(scene.size, TARGET).technique(scene.technique).shadows(coarse_shadows());
         let mut renderer = HairRenderer::new(gpu, &desc).expect("a renderer");
         let draw = SectionDraw::new(&section, &scene.material, sim.pose());
         renderer.grow_to_predicted(gpu, &view, &[draw]).expect("a pool");

@@ -8,7 +8,7 @@ use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::backend::Run;
 use tressfx_core::pass::{PassList, Ticket};
 use tressfx_core::shape::Capsule;
-use tressfx_core::strands::{StrandOptions, Strands, relative_to};
+use tressfx_core::strands::{StrandOptions, Strands, StrandsError, relative_to};
 use tressfx_core::view::Pose;
 use tressfx_sim::step::Step;
 use tressfx_sim::{
@@ -322,17 +322,25 @@ fn read(path: &str) -> Option<HairAsset> {
 /// # Panics
 /// If the file cannot be read.
 pub fn real_part(path: &str, most: u32) -> Option<Strands> {
-    let all = real(path)?;
+    let options = StrandOptions { follows: Some(0), ..StrandOptions::default() };
+    Some(part_of(&read(path)?, most, &options).expect("the asset is fine"))
+}
+
+/// Strands of an asset, or an even sample of so many, in the unit that the whole has.
+///
+/// # Errors
+/// Those of [`Strands::new`].
+pub fn part_of(asset: &HairAsset, most: u32, options: &StrandOptions) -> Result<Strands, StrandsError> {
+    let all = Strands::new(asset, options)?;
     if all.guides <= most {
-        return Some(all);
+        return Ok(all);
     }
-    let options =
-        StrandOptions { follows: Some(0), metres_per_unit: Some(all.metres_per_unit), ..StrandOptions::default() };
-    Some(Strands::new(&sampled(&read(path)?, most), &options).expect("the asset is fine"))
+    let options = StrandOptions { metres_per_unit: Some(all.metres_per_unit), ..options.clone() };
+    Strands::new(&sampled(asset, most), &options)
 }
 
 /// So many strands of an asset, evenly through the file.
-pub fn sampled(asset: &HairAsset, count: u32) -> HairAsset {
+fn sampled(asset: &HairAsset, count: u32) -> HairAsset {
     let strands = asset.counts.len();
     let starts: Vec<usize> = asset
         .counts

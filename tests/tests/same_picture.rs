@@ -12,9 +12,10 @@ use glam::{Mat4, Quat, Vec3};
 use tressfx_asset::mesh::Mesh;
 use tressfx_backend_vulkan::{VulkanBackend, VulkanOptions};
 use tressfx_conformance::render::{Groom, Picture, Screen, Setup};
+use tressfx_conformance::scene::coarse_shadows;
 use tressfx_core::backend::DepthOrder;
 use tressfx_core::view::{Camera, View};
-use tressfx_render::{FibreScattering, Highlight, Material, ShadowDesc, Technique};
+use tressfx_render::{FibreScattering, Highlight, Material, Technique};
 
 use hair::Grooms;
 use scenes::{Eye, Look, OTHERS, SCENES, Scene, Solid};
@@ -27,11 +28,6 @@ const FRAMES_OF_A_CHOICE: usize = 48;
 /// Where compilers round in two ways: by how much pixels may differ, and how many may by more.
 const TOLERANCE: f64 = 0.004;
 const DIFFERING: usize = 1000;
-
-/// Coarse shadows: scenes are small.
-fn shadows() -> Option<ShadowDesc> {
-    Some(ShadowDesc::default().texels(96, 32).cells(24))
-}
 
 fn look(look: Look) -> Material {
     Material::default().with(|m| match look {
@@ -141,7 +137,7 @@ impl Stage {
                 hair_output: false,
                 copies: false,
                 own_colors: true,
-                shadows: shadows(),
+                shadows: Some(coarse_shadows()),
             },
             view: view(scene.eye, &camera, scene.size),
             mesh: solid(scene.solid, &camera),
@@ -216,7 +212,7 @@ fn hold(beside: usize) {
     // Whatever the validation layer says fails the run of a list.
     let watched = VulkanOptions { validation: true, ..VulkanOptions::default() };
     let vulkan = VulkanBackend::headless_with(&watched).unwrap();
-    let shadowed = |setup: &mut Setup| (setup.own_colors, setup.shadows) = (true, shadows());
+    let shadowed = |setup: &mut Setup| (setup.own_colors, setup.shadows) = (true, Some(coarse_shadows()));
     let mut screens = [Screen::new(wgpu, shadowed), Screen::new(Box::new(vulkan), shadowed)];
     // On the CPU both backends compile the same code; on GPUs two compilers may round in two ways.
     let is_exact = screens[0].backend.caps().is_cpu;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use glam::{Quat, Vec3};
 use tressfx_asset::builtin::Builtin;
-use tressfx_conformance::sim::sampled;
+use tressfx_conformance::sim::part_of;
 use tressfx_core::asset::{AssetFormat, HairAsset};
 use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
@@ -146,13 +146,7 @@ impl Case {
             Source::File(path) => tressfx_asset::read(path).with_context(|| path.display().to_string())?,
         };
         let options = StrandOptions { follows: Some(0), vertices, ..StrandOptions::default() };
-        let all = Strands::new(&asset, &options)?;
-        if all.guides <= count {
-            return Ok(all);
-        }
-        // A sample of a file has the unit that the whole file has.
-        let options = StrandOptions { metres_per_unit: Some(all.metres_per_unit), ..options };
-        Ok(Strands::new(&sampled(&asset, count), &options)?)
+        Ok(part_of(&asset, count, &options)?)
     }
 
     /// What a frame that ends at this time is given.

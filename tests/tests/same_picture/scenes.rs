@@ -150,7 +150,7 @@ impl Setting {
             ("tiles", tiles.into()),
             ("auto", auto.dense(dense).tiles_on_cpu(true).into()),
         ];
-        let others = vec![
+        let others: [(&'static str, Technique); OTHERS] = [
             ("lists, four places", lists.places(4).into()),
             ("lists, 16 places, raster", lists.places(16).fill(Fill::Raster).into()),
             ("lists, nothing hidden", lists.skips_hidden(true).into()),
@@ -159,7 +159,7 @@ impl Setting {
             ("tiles, 16 places", tiles.places(16).into()),
             ("tiles, 64 places", tiles.places(64).into()),
         ];
-        [techniques, others]
+        [techniques, others.to_vec()]
     }
 }
 

@@ -40,7 +40,7 @@ struct TilesUniform {
     end: u32,
     // References of all rounds.
     covered: u32,
-    // Rounds, and the references with which tiles begin in each of them.
+    // Rounds, and the references with which tiles begin in each of them but the last.
     rounds: u32,
     window: u32,
     // 1 where references leave out what hair has hidden in the frame before.

@@ -49,7 +49,7 @@ gpu_struct! {
         pub covered: u32,
         /// How many there are.
         pub rounds: u32,
-        /// References with which tiles begin in each of them.
+        /// References with which tiles begin in each of them but the last.
         pub window: u32,
         /// 1 where references leave out what hair has hidden in the frame before, else 0.
         pub skips_hidden: u32,
