@@ -152,7 +152,7 @@ pub(crate) struct Tiles {
     is_cpu: bool,
     /// Vertices that the sections of the newest frame have.
     most_vertices: u64,
-    /// Its number, which begins anew behind the greatest.
+    /// Its number, from 1. Behind the greatest numbers begin anew, and what is kept of older frames is forgotten.
     frame: u32,
 }
 
@@ -352,7 +352,10 @@ impl TechniqueInstance for Tiles {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.most_vertices = layout::vertices(draws);
-        self.frame = self.frame.wrapping_add(1);
+        self.frame = self.frame.checked_add(1).unwrap_or_else(|| {
+            self.memory.forget();
+            1
+        });
         self.usage.begin_frame();
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();
@@ -376,7 +379,7 @@ impl TechniqueInstance for Tiles {
         self.kernels.alloc(list, view, &self.memory, Groups::Grid(alloc_grid(view.size)))?;
         self.rounds(list, view, targets.depth)?;
         if skips_hidden {
-            self.memory.clear_queue(list, view.size);
+            self.memory.clear_again(list, view.size);
             self.kernels.reopen(list, view, &self.memory)?;
             let [bin, alloc] = self.memory.groups_again();
             self.kernels.bin(list, view, &self.memory, None, bin)?;

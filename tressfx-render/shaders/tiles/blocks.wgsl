@@ -1,4 +1,4 @@
-// Blocks of tiles: most hidden segments are hidden in all tiles of the few blocks that they touch.
+// Blocks of tiles, where some are drawn again: most segments touch no block with such a tile, and are done with at once.
 
 import package::screen::tile_columns;
 import package::tile::TILE;
@@ -16,7 +16,7 @@ fn block_of(tile: u32) -> u32 {
     return block_at(vec2(tile % tile_columns(), tile / tile_columns()) / BLOCK);
 }
 
-// What a tile gives to its block, of which the block has the largest: the complement of the bits of the farthest nearness that is referred to.
+// What a tile that is drawn again gives to its block, of which the block has the largest: the complement of the bits of the farthest nearness that is referred to.
 // A block that no tile gave anything to has 0: it hides all.
 fn block_word(farthest: f32) -> u32 {
     return select(0xffffffffu, ~bitcast<u32>(farthest), farthest > 0.0);

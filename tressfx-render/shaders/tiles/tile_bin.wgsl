@@ -10,7 +10,7 @@ import package::ribbon::Ribbon;
 import package::screen::{DISTANCE_MARGIN, distance_of, tile_columns, tile_count, view};
 import package::segments::{leads_on, ribbon_of};
 import package::tile::TILE;
-import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, slice_of, tiles};
+import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, is_drawn_again, slice_of, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read> infos: array<TileInfo>;
@@ -92,7 +92,7 @@ fn quarters_of(span: Span, columns: vec2<i32>, tile_column: i32, row: i32) -> u3
     return (bits.x | bits.y | bits.z | bits.w) * FIRST_QUARTER;
 }
 
-// Whether a ribbon is hidden in all tiles that it may touch.
+// Whether a ribbon touches no tile that is drawn again, or is hidden in all of them.
 fn is_hidden(ribbon: Ribbon, span: Span) -> bool {
     let edge = i32(BLOCK_EDGE);
     let nearest = max(ribbon.nearness.x, ribbon.nearness.y) * (1.0 + DISTANCE_MARGIN);
@@ -155,7 +155,7 @@ fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
         return;
     }
     let span = span_of(ribbon, line);
-    if is_hidden(ribbon, span) {
+    if is_drawn_again(atomicLoad(&state.reopened)) && is_hidden(ribbon, span) {
         return;
     }
     let edge = i32(TILE);

@@ -2,7 +2,6 @@
 // by hair in the frame before, in the tile and, while hair is restless, in those around it. Whether it is hidden again is seen when the tile is blended. Eight
 // lanes a tile, one a row of pixels and one a neighbour.
 
-import package::blocks::{block_of, block_word};
 import package::grid::GROUP;
 import package::screen::{scene_nearness, tile_columns, tile_count, view};
 import package::tile::TILE;
@@ -10,7 +9,6 @@ import package::tiles::{ALL_PARTS, NOTHING_HIDDEN, TileInfo, ViewState, is_restl
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read_write> infos: array<TileInfo>;
-@group(0) @binding(13) var<storage, read_write> blocks: array<atomic<u32>>;
 
 const TILES: u32 = GROUP / TILE;
 
@@ -70,6 +68,5 @@ fn tile_depth(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) 
             seen = max(scene, bitcast<f32>(~atomicLoad(&hidden[own])));
         }
         infos[tile] = TileInfo(0.0, seen, scene, 0u, ALL_PARTS, 0u);
-        atomicMax(&blocks[block_of(tile)], block_word(seen));
     }
 }

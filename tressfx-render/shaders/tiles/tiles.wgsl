@@ -4,7 +4,7 @@ import package::counters::Counters;
 import package::screen::distance_of;
 
 // Slices of depth; each holds references to the segments that touch it.
-const SLICES: u32 = 64u;
+const SLICES: u32 = 96u;
 // Kinds of tiles by the number of their references, the heaviest last.
 const CLASSES: u32 = 8u;
 // Quarters of a tile, row by row: each is blended by a group.
@@ -119,6 +119,11 @@ const RESTLESS: u32 = 60u;
 // Whether hair moves so that what it hid in a tile in the frame before may be seen there in this one.
 fn is_restless(reopened: u32) -> bool {
     return tiles.frame - reopened < RESTLESS;
+}
+
+// Whether it is drawn again in this one.
+fn is_drawn_again(reopened: u32) -> bool {
+    return reopened == tiles.frame;
 }
 
 // The complement of the bits of nearness 0.

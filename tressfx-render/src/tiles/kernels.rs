@@ -222,7 +222,6 @@ impl Kernels {
             ("state", memory.counters.of(view.index).into()),
             ("scene_depth", scene_depth.into()),
             ("infos", memory.screen.infos.into()),
-            ("blocks", memory.screen.blocks.into()),
         ];
         self.depth.record(list, (view.index, scene_depth), Groups::Grid(alloc_grid(view.size)), &resources)
     }

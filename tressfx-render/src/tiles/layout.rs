@@ -14,7 +14,7 @@ use crate::uniforms::LodUniform;
 pub(crate) const MAX_VERTICES: u64 = 1 << 26;
 
 /// Slices of depth.
-pub(crate) const SLICES: u32 = 64;
+pub(crate) const SLICES: u32 = 96;
 
 /// Lanes of a group of `tile_points`.
 const LANES: u32 = 256;

@@ -418,6 +418,11 @@ impl Memory {
         [0, 1].map(|number| grid(self.grids_again, number))
     }
 
+    /// Forgets what is kept from frame to frame.
+    pub(crate) fn forget(&mut self) {
+        self.is_new = true;
+    }
+
     /// Begins a frame with so many views.
     pub(crate) fn begin(&mut self, list: &mut PassList, views: usize) {
         if std::mem::take(&mut self.is_new) {
@@ -430,12 +435,17 @@ impl Memory {
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
-        self.clear_queue(list, size);
+        self.clear_queue(list);
+    }
+
+    /// Empties blocks and the queue, for tiles that are drawn again.
+    pub(crate) fn clear_again(&self, list: &mut PassList, size: [u32; 2]) {
+        list.clear(self.screen.blocks, 0, sizes(size)[2]);
+        self.clear_queue(list);
     }
 
     /// No tile waits.
-    pub(crate) fn clear_queue(&self, list: &mut PassList, size: [u32; 2]) {
-        list.clear(self.screen.blocks, 0, sizes(size)[2]);
+    fn clear_queue(&self, list: &mut PassList) {
         list.clear(self.screen.queue, 0, QUEUE_HEADER);
         list.clear(self.grids, 0, GRIDS_BYTES);
         list.clear(self.grids_again, 0, AGAIN_BYTES);
