@@ -288,6 +288,8 @@ pub struct Screen {
     pub renderer: HairRenderer,
     /// Whether the pool of fragments may grow to what is predicted.
     pub may_grow: bool,
+    /// How often each list runs.
+    pub runs: u32,
     /// Renderers of other techniques: their pipelines take long to compile.
     kept: Vec<HairRenderer>,
     /// What draws meshes, by the order of depth.
@@ -312,7 +314,8 @@ impl Screen {
         let hair = setup.hair_output.then(|| backend.create_texture(&hair).expect("a texture"));
         let view = camera.view(size).expect("a view");
         let (kept, scenes) = (Vec::new(), Vec::new());
-        Self { backend, view, lights: dimmed(lights()), renderer, may_grow: true, kept, scenes, color, depth, hair }
+        let lights = dimmed(lights());
+        Self { backend, view, lights, renderer, may_grow: true, runs: 1, kept, scenes, color, depth, hair }
     }
 
     /// Another camera, size or technique on the same device. What was compiled is kept; pools begin anew.
@@ -443,6 +446,9 @@ impl Screen {
         self.renderer.draw(&mut list, &drawn, &draws).expect("views that can be drawn");
         let counters = self.renderer.request_counters(&mut list, 0);
         let picture = list.read_texture(self.color);
+        for _ in 1..self.runs {
+            self.backend.run(&list).expect("the list runs");
+        }
         let bytes = crate::run_and_read(&mut *self.backend, &list, picture);
         let counters = Counters::from_bytes(&self.backend.read(counters).ready().expect("it has run"));
         for (buffers, section) in sections {

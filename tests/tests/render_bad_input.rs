@@ -282,7 +282,7 @@ fn very_many_strands_in_one_pixel() {
 #[test]
 fn a_million_strands_in_one_pixel() {
     let (lists, mean, tiles) = (PpllDesc::default(), ShortCutDesc::default(), TilesDesc::default());
-    // A picture takes seconds: each method on both backends, what else it can do on one of them.
+    // A picture takes seconds: each technique on both backends, each of its variants on one of them.
     let by_wgpu = [lists.into(), mean.into(), mean.ordered(true).fill(RASTER).into(), tiles.into()];
     let by_vulkan =
         [lists.cap(2).fill(RASTER).into(), lists.skips_hidden(true).into(), mean.into(), tiles.places(16).into()];

@@ -96,6 +96,23 @@ fn what_comes_into_sight_again_is_drawn() {
 }
 
 #[test]
+fn views_of_one_frame_and_lists_that_run_twice_draw_tiles_again() {
+    let Some(mut screens) = screens() else { return };
+    let (groom, far) = (dense(), Groom::wavy(900, 16, 8, varied()));
+    let aside = Groom { pose: Pose { translation: Vec3::new(0.5, 0.2, 0.0), ..Pose::IDENTITY }, ..dense() };
+    for runs in [1, 2] {
+        for groom in [&groom, &groom, &groom, &aside, &groom] {
+            let [skipping, drawing] = screens.each_mut().map(|screen| {
+                let view = screen.view;
+                screen.runs = runs;
+                screen.views(&[view, view], &[groom, &far])
+            });
+            assert!(skipping.bytes == drawing.bytes, "{:?}", skipping.difference(&drawing.pixels()));
+        }
+    }
+}
+
+#[test]
 fn what_is_left_out_makes_room_and_rounds_do_not_matter() {
     let (groom, far) = (dense(), Groom::wavy(900, 16, 8, varied()));
     let Some(mut roomy) = screen(tiles(false)) else { return };

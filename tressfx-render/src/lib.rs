@@ -29,6 +29,7 @@
 //! hair.render.tile_bin          compute  one thread a segment, twice: counted and referred to from tiles    Technique::Tiles
 //! hair.render.tile_alloc        compute  eight threads a tile: where its references go                      Technique::Tiles
 //! hair.render.tile_blend        compute  a group a tile: its fragments in order                             Technique::Tiles
+//! hair.render.tile_reopen       compute  one thread a tile: those that are drawn again, with all hair       Technique::Tiles
 //!
 //! hair.render.composite         raster   tiles of pixels with hair: blended over the caller's picture       every technique
 //! hair.render.composite_compute compute  one thread a pixel of such tiles: the same, with storage_target    every technique

@@ -152,7 +152,7 @@ pub(crate) struct Tiles {
     is_cpu: bool,
     /// Vertices that the sections of the newest frame have.
     most_vertices: u64,
-    /// Its number, from 1. Behind the greatest numbers begin anew, and what is kept of older frames is forgotten.
+    /// Its number, which begins anew behind the greatest.
     frame: u32,
 }
 
@@ -352,10 +352,7 @@ impl TechniqueInstance for Tiles {
 
     fn begin(&mut self, list: &mut PassList, views: usize, draws: &[SectionDraw]) {
         self.most_vertices = layout::vertices(draws);
-        self.frame = self.frame.checked_add(1).unwrap_or_else(|| {
-            self.memory.forget();
-            1
-        });
+        self.frame = self.frame.wrapping_add(1);
         self.usage.begin_frame();
         self.kernels.begin_frame();
         self.composite.bound.begin_frame();

@@ -8,6 +8,18 @@ const BLOCK: u32 = 4u;
 // Pixels along it.
 const BLOCK_EDGE: u32 = BLOCK * TILE;
 
+struct Blocks {
+    // 1 where tiles are drawn again: before that, blocks know nothing.
+    are_drawn_again: u32,
+    words: array<u32>,
+}
+
+// The same while many groups come to a block.
+struct SharedBlocks {
+    are_drawn_again: atomic<u32>,
+    words: array<atomic<u32>>,
+}
+
 fn block_at(place: vec2<u32>) -> u32 {
     return place.y * ((tile_columns() + BLOCK - 1u) / BLOCK) + place.x;
 }

@@ -3,21 +3,21 @@
 // code each time, compiled once, so that a compiler cannot round it differently: a bin gets exactly what was counted for it. One
 // thread a vertex, for the segment that begins there.
 
-import package::blocks::{BLOCK_EDGE, block_at, is_hidden_in};
+import package::blocks::{BLOCK_EDGE, Blocks, block_at, is_hidden_in};
 import package::grid::{GROUP, thread_index};
 import package::line::{Line, Span, is_drawn, line_of, middle_of, span_of};
 import package::ribbon::Ribbon;
 import package::screen::{DISTANCE_MARGIN, distance_of, tile_columns, tile_count, view};
 import package::segments::{leads_on, ribbon_of};
 import package::tile::TILE;
-import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, is_drawn_again, slice_of, tiles};
+import package::tiles::{FIRST_QUARTER, IS_NEAREST, REACHES_ON, STRIDE, TileInfo, ViewState, begin_of, slice_of, tiles};
 
 @group(0) @binding(4) var<storage, read_write> state: ViewState;
 @group(0) @binding(6) var<storage, read> infos: array<TileInfo>;
 // A slice after the other: a number a tile. References while they are counted, then the place of the next one.
 @group(0) @binding(7) var<storage, read_write> bins: array<atomic<u32>>;
 @group(0) @binding(8) var<storage, read_write> references: array<u32>;
-@group(0) @binding(13) var<storage, read> blocks: array<u32>;
+@group(0) @binding(13) var<storage, read> blocks: Blocks;
 
 // Pixels by which a part of a ribbon is taken larger than it is: more than rounding can move a fragment.
 const PIXEL_MARGIN: f32 = 0.02;
@@ -92,7 +92,7 @@ fn quarters_of(span: Span, columns: vec2<i32>, tile_column: i32, row: i32) -> u3
     return (bits.x | bits.y | bits.z | bits.w) * FIRST_QUARTER;
 }
 
-// Whether a ribbon touches no tile that is drawn again, or is hidden in all of them.
+// Whether a ribbon touches no block with a tile that is drawn again, or is hidden in all of them.
 fn is_hidden(ribbon: Ribbon, span: Span) -> bool {
     let edge = i32(BLOCK_EDGE);
     let nearest = max(ribbon.nearness.x, ribbon.nearness.y) * (1.0 + DISTANCE_MARGIN);
@@ -100,7 +100,7 @@ fn is_hidden(ribbon: Ribbon, span: Span) -> bool {
     for (var column = span.first_column / edge; column * edge <= span.last_column; column++) {
         for (var row = rows.x / edge; row * edge <= rows.y; row++) {
             let place = vec2<u32>(select(vec2(column, row), vec2(row, column), span.steep));
-            if !is_hidden_in(blocks[block_at(place)], nearest) {
+            if !is_hidden_in(blocks.words[block_at(place)], nearest) {
                 return false;
             }
         }
@@ -155,7 +155,7 @@ fn tile_bin(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gr
         return;
     }
     let span = span_of(ribbon, line);
-    if is_drawn_again(atomicLoad(&state.reopened)) && is_hidden(ribbon, span) {
+    if blocks.are_drawn_again == 1u && is_hidden(ribbon, span) {
         return;
     }
     let edge = i32(TILE);

@@ -121,11 +121,6 @@ fn is_restless(reopened: u32) -> bool {
     return tiles.frame - reopened < RESTLESS;
 }
 
-// Whether it is drawn again in this one.
-fn is_drawn_again(reopened: u32) -> bool {
-    return reopened == tiles.frame;
-}
-
 // The complement of the bits of nearness 0.
 const NOTHING_HIDDEN: u32 = 0xffffffffu;
 

@@ -82,6 +82,9 @@ const INFO_BYTES: u64 = 24;
 /// Pixels along an edge of a block of tiles, see `blocks.wgsl`.
 const BLOCK_EDGE: u32 = 4 * TILE;
 
+/// Bytes before those of the blocks: whether tiles are drawn again.
+const BLOCKS_HEADER: u64 = 4;
+
 /// Bytes of what is kept of a view from frame to frame: when a tile was drawn again.
 const KEPT_OF_A_VIEW: u64 = 4;
 
@@ -210,7 +213,7 @@ impl Screen {
 fn sizes(size: [u32; 2]) -> [u64; 4] {
     let tiles = u64::from(tile_count(size));
     let blocks: u64 = size.map(|edge| u64::from(edge.div_ceil(BLOCK_EDGE))).iter().product();
-    [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, 4 * blocks, QUEUE_HEADER + 4 * CLASSES * tiles]
+    [4 * u64::from(SLICES) * tiles, INFO_BYTES * tiles, BLOCKS_HEADER + 4 * blocks, QUEUE_HEADER + 4 * CLASSES * tiles]
 }
 
 /// Bytes of what is kept of a view from frame to frame.
@@ -418,11 +421,6 @@ impl Memory {
         [0, 1].map(|number| grid(self.grids_again, number))
     }
 
-    /// Forgets what is kept from frame to frame.
-    pub(crate) fn forget(&mut self) {
-        self.is_new = true;
-    }
-
     /// Begins a frame with so many views.
     pub(crate) fn begin(&mut self, list: &mut PassList, views: usize) {
         if std::mem::take(&mut self.is_new) {
@@ -431,10 +429,11 @@ impl Memory {
         self.counters.clear(list, views);
     }
 
-    /// Empties bins and the queue for a view of this size.
+    /// Empties bins and the queue for a view of this size; no tile is drawn again.
     pub(crate) fn clear(&self, list: &mut PassList, size: [u32; 2]) {
         self.screen.resolved.clear(list);
         list.clear(self.screen.bins, 0, sizes(size)[0]);
+        list.clear(self.screen.blocks, 0, BLOCKS_HEADER);
         self.clear_queue(list);
     }
 
