@@ -20,6 +20,11 @@ fn dense() -> Groom {
     Groom::wavy(6000, 16, 3, varied().with(|m| m.fibre_radius = Some(0.01)))
 }
 
+/// The same somewhere else.
+fn dense_at(x: f32, y: f32, z: f32) -> Groom {
+    Groom { pose: Pose { translation: Vec3::new(x, y, z), ..Pose::IDENTITY }, ..dense() }
+}
+
 /// Both pictures of a frame, the one without what was hidden first.
 fn both(screens: &mut [Screen; 2], grooms: &[&Groom]) -> [Picture; 2] {
     let [skipping, drawing] = screens;
@@ -65,7 +70,7 @@ fn hair_at_rest_hides_more_until_it_moves() {
     eprintln!("{moving} of {} references, at rest {at_rest}", all.counters.wanted);
     assert!(at_rest < moving * 9 / 10, "{wanted:?}");
     // What it hid in a tile alone is seen now, and tiles are drawn again.
-    let aside = Groom { pose: Pose { translation: Vec3::new(0.5, 0.2, 0.0), ..Pose::IDENTITY }, ..dense() };
+    let aside = dense_at(0.5, 0.2, 0.0);
     both(&mut screens, &[&aside]);
     both(&mut screens, &[&groom]);
     let [_, again] = [(); 2].map(|()| both(&mut screens, &[&groom])[0].counters.wanted);
@@ -76,12 +81,12 @@ fn hair_at_rest_hides_more_until_it_moves() {
 fn what_comes_into_sight_again_is_drawn() {
     let Some(mut screens) = screens() else { return };
     let groom = dense();
-    let near = Groom { pose: Pose { translation: Vec3::new(0.0, 0.0, 0.9), ..Pose::IDENTITY }, ..dense() };
+    let near = dense_at(0.0, 0.0, 0.9);
     let far = Groom::wavy(900, 16, 8, varied());
     let wanted = |pictures: [Picture; 2]| pictures.map(|picture| picture.counters.wanted);
     // It stands, moves, jumps aside, goes, comes back, and another one comes before it.
     both(&mut screens, &[&groom, &far]);
-    let at = |x: f32, y: f32| Groom { pose: Pose { translation: Vec3::new(x, y, 0.0), ..Pose::IDENTITY }, ..dense() };
+    let at = |x: f32, y: f32| dense_at(x, y, 0.0);
     for step in 1..6 {
         both(&mut screens, &[&at(0.01 * step as f32, 0.0), &far]);
     }
@@ -99,7 +104,7 @@ fn what_comes_into_sight_again_is_drawn() {
 fn views_of_one_frame_and_lists_that_run_twice_draw_tiles_again() {
     let Some(mut screens) = screens() else { return };
     let (groom, far) = (dense(), Groom::wavy(900, 16, 8, varied()));
-    let aside = Groom { pose: Pose { translation: Vec3::new(0.5, 0.2, 0.0), ..Pose::IDENTITY }, ..dense() };
+    let aside = dense_at(0.5, 0.2, 0.0);
     for runs in [1, 2] {
         for groom in [&groom, &groom, &groom, &aside, &groom] {
             let [skipping, drawing] = screens.each_mut().map(|screen| {
