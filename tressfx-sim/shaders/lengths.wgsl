@@ -20,13 +20,12 @@ fn stretched(stretching: ptr<function, Stretching>, vertex: vec4<f32>, length: f
     // The edge to an odd vertex is even, and an even half is at it.
     if (t % 2u == 0u) { return; }
     for (var j = 0u; j < 2u * LENGTHS; j++) {
-        if (t > j && t < step.vertices + j) {
-            let parent = (*stretching).vertices[j + 1u];
-            let child = (*stretching).vertices[j];
-            let correction = correction_of(parent, child, (*stretching).lengths[j]);
-            (*stretching).vertices[j + 1u] = parent + vec4(parent.w * correction, 0.0);
-            (*stretching).vertices[j] = child - vec4(child.w * correction, 0.0);
-        }
+        let parent = (*stretching).vertices[j + 1u];
+        let child = (*stretching).vertices[j];
+        let is_edge = t > j && t < step.vertices + j;
+        let correction = select(vec3(0.0), correction_of(parent, child, (*stretching).lengths[j]), is_edge);
+        (*stretching).vertices[j + 1u] = parent + vec4(parent.w * correction, 0.0);
+        (*stretching).vertices[j] = child - vec4(child.w * correction, 0.0);
     }
 }
 

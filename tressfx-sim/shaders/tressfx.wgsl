@@ -12,9 +12,9 @@ import package::contact::{clear_distance, pushed_out};
 import package::contact::longest_way;
 import package::counts::Counts;
 import package::grid::{GROUP, thread_index};
-import package::integrate::{Free, integrated};
+import package::integrate::{Carrier, carrier_of, integrated};
 import package::lengths::{Stretching, stretched};
-import package::local_shape::{Shaping, shaped};
+import package::local_shape::{Shaping, rest_edge_of, shaped};
 import package::root::{Root, root_of, shape_of};
 import package::step::step;
 import package::vector::{DOWN, direction_or, is_finite};
@@ -26,7 +26,7 @@ import package::wind::{across_edge, wind_of};
 @group(0) @binding(4) var<storage, read_write> counts: Counts;
 
 /// How far the last stage is behind the first one, vertices.
-const LAG: u32 = LOCAL + 1u + 2u * LENGTHS;
+const LAG: u32 = LOCAL + 2u + 2u * LENGTHS;
 
 /// A vertex as it is stored: positions relative to the centre of the groom, and the inverse mass with the rest position.
 struct Stored { position: vec3<f32>, past: vec3<f32>, rest: vec4<f32> }
@@ -66,6 +66,7 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
     walk.finite = true;
     walk.edge = DOWN;
     for (var k = 0u; k < LOCAL; k++) { shaping.frames[k] = root.rotation; }
+    let carrier = carrier_of(root);
 
     // `CHUNK` vertices are loaded at once, while the ones before them are worked on: a load cannot be moved up across stores.
     var ahead = loaded(strand, 0u);
@@ -76,18 +77,17 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         if (start + CHUNK < step.vertices) { ahead = loaded(strand, start + CHUNK); }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
-            if (t < step.vertices) { enter(&walk, &shaping, root, chunk.vertices[i], strand, t); }
+            // The last stage comes first, so that it need not wait for the one before it.
+            let done = t - LAG;
+            if (done < step.vertices) { store(&walk, stretching.vertices[2u * LENGTHS], root, strand, done); }
+            if (t < step.vertices) { enter(&walk, &shaping, carrier, chunk.vertices[i], strand, t); }
             shaped(&shaping, t);
             let next = shaping.vertices[LOCAL];
-            if (t > LOCAL) {
-                let vertex = t - LOCAL - 1u;
-                stretched(&stretching, blown(&walk, next.xyz, wind, vertex), walk.calm_length, vertex);
-                if (vertex >= 2u * LENGTHS && vertex < step.vertices + 2u * LENGTHS) {
-                    store(&walk, stretching.vertices[2u * LENGTHS], root, strand, vertex - 2u * LENGTHS);
-                }
-            }
+            // Before there is a vertex for the wind this is beyond all of them.
+            let vertex = t - LOCAL - 1u;
+            stretched(&stretching, blown(&walk, next.xyz, wind, vertex), walk.calm_length, vertex);
             walk.calm = next;
-            walk.calm_length = shaping.edges[LOCAL].w;
+            walk.calm_length = shaping.edges[LOCAL].length;
         }
     }
     if (!walk.finite) {
@@ -107,25 +107,22 @@ fn loaded(strand: u32, start: u32) -> Chunk {
 }
 
 /// A vertex is moved freely, and handed to the local shape.
-fn enter(walk: ptr<function, Walk>, shaping: ptr<function, Shaping>, root: Root, stored: Stored, strand: u32, vertex: u32) {
-    let free = integrated(root, stored.position, stored.past, stored.rest, vertex);
+fn enter(walk: ptr<function, Walk>, shaping: ptr<function, Shaping>, carrier: Carrier, stored: Stored, strand: u32, vertex: u32) {
+    let free = integrated(carrier, stored.position, stored.past, stored.rest, vertex);
     previous[vertex * step.guides + strand] = vec4(free.past, 0.0);
-    if (vertex == 0u) {
-        (*walk).origin = free.position;
-        (*walk).rest_before = stored.rest.xyz;
-    }
-    let rest_edge = stored.rest.xyz - (*walk).rest_before;
+    (*walk).origin = select((*walk).origin, free.position, vertex == 0u);
+    let parent = select((*walk).rest_before, stored.rest.xyz, vertex == 0u);
     (*walk).rest_before = stored.rest.xyz;
-    let length = sqrt(dot(rest_edge, rest_edge));
     (*shaping).entered = vec4(free.position - (*walk).origin, stored.rest.w);
-    (*shaping).entered_edge = vec4(direction_or(rest_edge, vec3(0.0)), length);
+    (*shaping).entered_edge = rest_edge_of(stored.rest.xyz - parent);
 }
 
 /// The vertex that the wind is at, after it; `next` is the one after it. All edges are as they were before the wind. The tip has no
 /// edge of its own and takes the last one's.
 fn blown(walk: ptr<function, Walk>, next: vec3<f32>, wind: vec3<f32>, vertex: u32) -> vec4<f32> {
     let calm = (*walk).calm;
-    if (vertex + 1u < step.vertices) { (*walk).edge = direction_or(next - calm.xyz, (*walk).edge); }
+    let direction = direction_or(next - calm.xyz, (*walk).edge);
+    (*walk).edge = select((*walk).edge, direction, vertex < step.vertices - 1u);
     return calm + vec4(select(vec3(0.0), across_edge(wind, (*walk).edge), calm.w > 0.0), 0.0);
 }
 

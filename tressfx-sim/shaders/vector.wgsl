@@ -11,10 +11,28 @@ fn rotate(rotation: vec4<f32>, v: vec3<f32>) -> vec3<f32> {
     return v + rotation.w * t + cross(rotation.xyz, t);
 }
 
+/// The matrix of a rotation by a unit quaternion.
+fn matrix_of(rotation: vec4<f32>) -> mat3x3<f32> {
+    return mat3x3(
+        rotate(rotation, vec3(1.0, 0.0, 0.0)),
+        rotate(rotation, vec3(0.0, 1.0, 0.0)),
+        rotate(rotation, vec3(0.0, 0.0, 1.0)),
+    );
+}
+
 /// By what a rotation moves a point.
 fn turned_by(rotation: vec4<f32>, point: vec3<f32>) -> vec3<f32> {
     let t = 2.0 * cross(rotation.xyz, point);
     return rotation.w * t + cross(rotation.xyz, t);
+}
+
+/// The matrix of that: less rounded than the difference of a rotation's matrix and that of none.
+fn moved_by(rotation: vec4<f32>) -> mat3x3<f32> {
+    return mat3x3(
+        turned_by(rotation, vec3(1.0, 0.0, 0.0)),
+        turned_by(rotation, vec3(0.0, 1.0, 0.0)),
+        turned_by(rotation, vec3(0.0, 0.0, 1.0)),
+    );
 }
 
 /// Turns a vector back.
