@@ -5,7 +5,7 @@ import package::constants::LOCAL;
 import package::step::step;
 import package::vector::{NO_LENGTH, after, rotate};
 
-/// An edge of the rest pose, from the parent, and its length with one over it; 0 where it has no direction.
+/// An edge of the rest pose, from the parent; its length and one over that, both 0 where it has no direction.
 struct RestEdge { along: vec3<f32>, length: f32, inverse_length: f32 }
 
 /// Iteration `k` is at the edge between `vertices[k + 1]` and `vertices[k]`. Vertices are relative to the root, with their inverse
@@ -83,7 +83,7 @@ fn turned_on(frame: vec4<f32>, one: vec3<f32>, other: vec3<f32>, inverse: f32) -
     return after(arc * (inverseSqrt(select(2.0 * c, dot(arc, arc), c < FOLDED)) * to_unit), frame);
 }
 
-/// A vector across another, of at least 0.7 of its length.
+/// A vector across another of any length, of at least 0.7 of that. What takes it makes its own unit vector, so `across` would do that twice.
 fn perpendicular_to(v: vec3<f32>) -> vec3<f32> {
     return select(vec3(0.0, v.z, -v.y), vec3(-v.z, 0.0, v.x), abs(v.x) > abs(v.y));
 }

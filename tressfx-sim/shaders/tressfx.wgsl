@@ -77,13 +77,13 @@ fn tressfx(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) gro
         if (start + CHUNK < step.vertices) { ahead = loaded(strand, start + CHUNK); }
         for (var i = 0u; i < CHUNK; i++) {
             let t = start + i;
-            // The last stage comes first, so that it need not wait for the one before it.
+            // The last stage comes first, so that it need not wait for the one before it. Where a stage has no vertex yet, its number wraps
+            // around, beyond all of them.
             let done = t - LAG;
             if (done < step.vertices) { store(&walk, stretching.vertices[2u * LENGTHS], root, strand, done); }
             if (t < step.vertices) { enter(&walk, &shaping, carrier, chunk.vertices[i], strand, t); }
             shaped(&shaping, t);
             let next = shaping.vertices[LOCAL];
-            // Before there is a vertex for the wind this is beyond all of them.
             let vertex = t - LOCAL - 1u;
             stretched(&stretching, blown(&walk, next.xyz, wind, vertex), walk.calm_length, vertex);
             walk.calm = next;

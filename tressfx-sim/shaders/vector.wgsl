@@ -58,14 +58,6 @@ fn across(u: vec3<f32>) -> vec3<f32> {
     return normalize(cross(u, axis));
 }
 
-/// The smallest rotation that takes the unit vector `u` to the unit vector `v`, after `rotation`; a unit quaternion. Opposite
-/// vectors are joined by a half turn.
-fn turned(rotation: vec4<f32>, u: vec3<f32>, v: vec3<f32>) -> vec4<f32> {
-    let c = 1.0 + dot(u, v);
-    let arc = select(vec4(cross(u, v), c), vec4(across(u), 0.0), c < 1e-6);
-    return normalize(after(arc, rotation));
-}
-
 /// Whether all three are numbers. Looks at the bits: compilers may assume that comparisons never see a NaN.
 fn is_finite(v: vec3<f32>) -> bool {
     let exponents = bitcast<vec3<u32>>(v) & vec3(0x7f800000u);
