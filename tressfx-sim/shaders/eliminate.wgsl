@@ -2,9 +2,10 @@
 // the edge and all beyond want of them. That is half of a quadratic function of the displacement of a vertex and of the rotation of
 // the edge before it.
 
-import package::joint::{Stiffness, by_spring, joint_between, lag_of, spring_of, stiffness_of, torque_by, torque_of};
+import package::joint::{Stiffness, by_spring, joint_between, lag_of, spring_by, spring_of, stiffness_of, torque_by, torque_of};
+import package::left::{Left, scale_of, store_left};
 import package::rod::{
-    HOLDING, LAST_STRAIN, LEFT, Row, STRAIN, Strand, along, half_turn, rest, rods, row_of, slot,
+    HOLDING, LAST_STRAIN, Row, STRAIN, Strand, along, half_turn, rest, rods, row_of, slot,
 };
 import package::root::shape_of;
 import package::step::step;
@@ -40,34 +41,6 @@ struct Begin {
     @if(colliders) near: Range,
     /// The most that the surface of any collider has moved past the head.
     @if(colliders) surface: f32,
-}
-
-/// What is left of an edge: its rotation is `free + inverse * (K * rotation of its parent - transpose(mixed) * displacement of the vertex
-/// before it)`, with the stiffness K of its joint; of the inverse the factors are left.
-struct Left {
-    free: vec3<f32>,
-    factors: Symmetric,
-    mixed: mat3x3<f32>,
-    /// The bending stiffness that K has.
-    bending: f32,
-}
-
-fn store_left(strand: Strand, vertex: u32, left: Left) {
-    rods[slot(strand, vertex, LEFT)] = vec4(left.factors.diagonal, left.bending);
-    rods[slot(strand, vertex, LEFT + 1u)] = vec4(left.factors.beside, 0.0);
-    rods[slot(strand, vertex, LEFT + 2u)] = vec4(left.mixed[0], left.free.x);
-    rods[slot(strand, vertex, LEFT + 3u)] = vec4(left.mixed[1], left.free.y);
-    rods[slot(strand, vertex, LEFT + 4u)] = vec4(left.mixed[2], left.free.z);
-}
-
-fn left_of(strand: Strand, vertex: u32) -> Left {
-    let diagonal = rods[slot(strand, vertex, LEFT)];
-    let beside = rods[slot(strand, vertex, LEFT + 1u)];
-    let first = rods[slot(strand, vertex, LEFT + 2u)];
-    let second = rods[slot(strand, vertex, LEFT + 3u)];
-    let third = rods[slot(strand, vertex, LEFT + 4u)];
-    let factors = Symmetric(diagonal.xyz, beside.xyz);
-    return Left(vec3(first.w, second.w, third.w), factors, mat3x3(first.xyz, second.xyz, third.xyz), diagonal.w);
 }
 
 /// A vertex: where the past says that it would be without forces, and with gravity alone, from where it is.
@@ -198,9 +171,10 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         let roll = 0.5 * max(dot(own, cross(direction, axis)), 0.0);
         turn = sum(turn, outer(roll, axis));
         let factors = factors_of(sum(turn, stiff));
+        let behind = solved_columns(factors, whole(turn));
         let by_place = solved_columns(factors, transpose(mixed));
         let free = solved(factors, torque + own);
-        store_left(strand, vertex, Left(free, factors, mixed, spring.bending));
+        store_left(strand, vertex, Left(free, behind, scale_of(strand, length) * by_place));
 
         let mass = 0.5 * (length_before + length);
         let vertex_axis = direction_or(axis + direction, axis);
@@ -210,7 +184,7 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         // Equal to `stiff * free - own`, without the difference of two large numbers.
         torque = torque_by(spring, solved(factors, torque)) - times(turn, solved(factors, own));
         mixed = by_spring(transpose(by_place), spring);
-        turn = sum(scaled(0.5, with_transpose(whole(turn) * solved_columns(factors, whole(stiff)))), outer(roll, direction));
+        turn = sum(scaled(0.5, with_transpose(spring_by(spring, behind))), outer(roll, direction));
         pull += before.force;
 
         after_edge = before_edge;

@@ -84,7 +84,12 @@ fn stiffness_of(spring: Spring) -> Symmetric {
     return sum(scaled_identity(spring.bending), twist);
 }
 
-/// A matrix times the stiffness.
+/// The stiffness times a matrix,
+fn spring_by(spring: Spring, m: mat3x3<f32>) -> mat3x3<f32> {
+    return mat3x3(torque_by(spring, m[0]), torque_by(spring, m[1]), torque_by(spring, m[2]));
+}
+
+/// and a matrix times the stiffness.
 fn by_spring(m: mat3x3<f32>, spring: Spring) -> mat3x3<f32> {
     let twist = (spring.twist_ratio - 1.0) * (m * spring.axis);
     let t = spring.axis;

@@ -16,23 +16,24 @@ import package::wind::wind_of;
 @group(0) @binding(3) var<storage, read_write> rods: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
-const SLOTS: u32 = 16u;
+const SLOTS: u32 = 14u;
 /// What the vertex moved by in each of the last sub-steps, in turns, and its inverse mass.
 const MOVED: u32 = 0u;
 const MOVES: u32 = 4u;
-/// The frame of the edge, and what its direction has changed by in this sub-step.
+/// The frame of the edge; and what its direction has changed by in this sub-step, with the length of the edge. Not where no other round follows, unless
+/// something else asks for them.
 const FRAME: u32 = 4u;
 const TURNED: u32 = 5u;
-/// The frame that the next sub-step begins with, and what the direction changes by with it; see `aim`.
+/// The frame that the next sub-step begins with; and what the direction changes by with it, with the length; see `aim`.
 const GUESS: u32 = 6u;
 const AIMED: u32 = 7u;
-/// What the elimination leaves of the edge: see `Left`.
+/// What the elimination leaves of the edge, three of them: see `Left`.
 const LEFT: u32 = 8u;
 /// The strain of the joint before the edge and what the edge touches, and the strain before.
-const STRAIN: u32 = 13u;
-const LAST_STRAIN: u32 = 14u;
+const STRAIN: u32 = 11u;
+const LAST_STRAIN: u32 = 12u;
 /// How far the friction of the edge is stretched, and the side that it touches.
-const TOUCH: u32 = 15u;
+const TOUCH: u32 = 13u;
 
 /// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved where the edges behind
 /// the first free one take their guesses, and `Marks`;

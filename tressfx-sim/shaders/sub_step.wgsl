@@ -14,7 +14,7 @@ import package::rod_touch::Found;
 import package::rod_touch::note_touches;
 import package::root::shape_of;
 import package::step::step;
-import package::substitute::{Aimed, NO_AIM_AT_ROOT, Round, Start, aim, aim_again, keep_aim, substitute};
+import package::substitute::{Aimed, NO_AIM_AT_ROOT, NO_LIMIT, Round, Start, aim, aim_again, keep_aim, substitute};
 
 @group(0) @binding(5) var<storage, read_write> counts: Counts;
 
@@ -49,7 +49,7 @@ fn rest_again(strand: Strand) {
         if (i > 0u) {
             let frame = frame_at_rest(strand, i);
             rods[slot(strand, i, FRAME)] = frame;
-            keep_aim(strand, i, 0.0, Aimed(frame, vec3(0.0)));
+            keep_aim(strand, i, rest_before(strand, i).w, Aimed(frame, vec3(0.0)));
         }
     }
     rods[slot(strand, 0u, BEGIN)] = vec4(0.0, 0.0, 0.0, packed_marks(Marks(strand.turn, false, false, false)));
@@ -121,7 +121,7 @@ fn next_begin(strand: Strand, start: Start, round: Round) -> Begin {
 
 /// Where an edge turns by more than this in a round, rad, there is another one.
 fn limit_of(round: u32) -> f32 {
-    return select(1e9, ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), round < step.rounds);
+    return select(NO_LIMIT, ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), round < step.rounds);
 }
 
 /// Whether the last round may not be the end. Where an edge may touch something, the next sweep says; see `is_end`.

@@ -1,12 +1,10 @@
 // The sweep of a round from the root to the tip: turns each edge, and leaves what the next sub-step begins with.
 
-import package::eliminate::{Left, left_of};
-import package::joint::{Spring, torque_by, turned_back, twist_axis};
+import package::left::{Packed, left_of, packed_left, scale_of};
 import package::rod::{
-    AIMED, FRAME, GUESS, Strand, TURNED, along, half_turn, moved_slot, positions, rest_before, rods, slot, speed_of,
+    AIMED, FRAME, GUESS, Strand, TURNED, along, moved_slot, positions, rest_before, rods, slot, speed_of,
 };
 import package::step::step;
-import package::symmetric::solved;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
 import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, squared_past_head};
@@ -15,6 +13,9 @@ import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, square
 const NO_AIM: f32 = 2.0;
 /// The same for the first free edge: where its root is may be mostly rounding.
 const NO_AIM_AT_ROOT: f32 = 0.5;
+/// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
+const NO_LIMIT: f32 = 1e9;
+
 /// Nor is one that would be turned by more than what this cosine says.
 const FOLDED: f32 = -0.99;
 
@@ -56,15 +57,21 @@ fn nothing_done(start: Start) -> Round {
 }
 
 /// What the sweep needs of a vertex and the edge before it.
-struct Hung { left: Left, now: vec4<f32>, by: vec3<f32>, moved: vec4<f32>, rest: vec4<f32> }
+struct Hung {
+    left: Packed,
+    now: vec4<f32>,
+    /// With the length.
+    by: vec4<f32>,
+    /// Only where the round may be the last.
+    moved: vec4<f32>,
+}
 
-fn hung(strand: Strand, vertex: u32, is_first_round: bool) -> Hung {
+fn hung(strand: Strand, vertex: u32, is_first_round: bool, may_be_last: bool) -> Hung {
     var hung: Hung;
-    hung.left = left_of(strand, vertex);
+    hung.left = packed_left(strand, vertex);
     hung.now = rods[slot(strand, vertex, select(FRAME, GUESS, is_first_round))];
-    hung.by = rods[slot(strand, vertex, select(TURNED, AIMED, is_first_round))].xyz;
-    hung.moved = rods[moved_slot(strand, vertex, 1u)];
-    hung.rest = rest_before(strand, vertex);
+    hung.by = rods[slot(strand, vertex, select(TURNED, AIMED, is_first_round))];
+    if (may_be_last) { hung.moved = rods[moved_slot(strand, vertex, 1u)]; }
     return hung;
 }
 
@@ -88,8 +95,14 @@ fn aim(frame: vec4<f32>, length: f32, apart: vec3<f32>, most: f32) -> Aimed {
 /// Stores a guess; gives by what it moves the end of the edge.
 fn keep_aim(strand: Strand, vertex: u32, length: f32, aimed: Aimed) -> vec3<f32> {
     rods[slot(strand, vertex, GUESS)] = aimed.frame;
-    rods[slot(strand, vertex, AIMED)] = vec4(aimed.by, 0.0);
+    rods[slot(strand, vertex, AIMED)] = vec4(aimed.by, length);
     return length * aimed.by;
+}
+
+/// Where no other round follows one of this limit, whatever it comes to, and nothing else asks for frames, only the guesses are kept.
+fn needs_frames(limit: f32) -> bool {
+    @if(colliders || internal_damping) { return true; }
+    @if(!colliders && !internal_damping) { return limit < NO_LIMIT; }
 }
 
 /// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames.
@@ -98,32 +111,33 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
     var round = nothing_done(start);
     var shift = vec3(0.0);
     var parent_turn = vec3(0.0);
-    var parent = start.parent;
     var speed_before = vec3(0.0);
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
     @if(colliders) var past_before = squared_past_head(strand, start.place, start.moving);
+    var next = hung(strand, strand.held + 1u, is_first_round, true);
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
-        let here = hung(strand, vertex, is_first_round);
-        let length = here.rest.w;
-        let half = half_turn(here.rest);
-        let axis = twist_axis(after(parent, half), turned_back(here.now, half));
-        let spring = Spring(here.left.bending, step.twist_ratio, axis);
-        let torque = torque_by(spring, parent_turn) - shift * here.left.mixed;
-        var turn = here.left.free + solved(here.left.factors, torque);
+        let here = next;
+        next = hung(strand, min(vertex + 1u, strand.edges), is_first_round, round.longest <= limit);
+        let length = here.by.w;
+        let left = left_of(here.left);
+        let scaled = shift / scale_of(strand, length);
+        let is_first_edge = vertex == strand.held + 1u;
+        var turn = left.free + parent_turn - left.behind * parent_turn - left.by_shift * scaled;
         let size = sqrt(dot(turn, turn));
         turn *= min(1.0, most / max(size, most));
         round.longest = max(round.longest, min(size, most));
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
-        let by = here.by + turned_by(rotation, along(here.now));
+        let by = here.by.xyz + turned_by(rotation, along(here.now));
         @if(colliders) let place_before = round.place;
         shift += length * cross(turn, along(here.now));
         round.moving += length * by;
         round.place += length * along(now);
-        round.finite = round.finite && is_finite(round.place) && is_finite(round.moving);
-        rods[slot(strand, vertex, FRAME)] = now;
-        rods[slot(strand, vertex, TURNED)] = vec4(by, 0.0);
+        if (is_first_edge || needs_frames(limit)) {
+            rods[slot(strand, vertex, FRAME)] = now;
+            rods[slot(strand, vertex, TURNED)] = vec4(by, length);
+        }
         @if(colliders) {
             let past = squared_past_head(strand, round.place, round.moving);
             let more = max(past_before, past);
@@ -136,17 +150,17 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, here.moved.w);
             // By what the vertex would move in another sub-step.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
-            if (vertex > strand.held + 1u) {
+            if (!is_first_edge) {
                 round.aimed += keep_aim(strand, vertex, length, aim(now, length, speed_here - speed_before, NO_AIM));
             }
             speed_before = speed_here;
         }
-        parent = here.now;
         parent_turn = turn;
     }
     @if(colliders) {
         round.near = near;
     }
+    round.finite = is_finite(round.place) && is_finite(round.moving);
     return round;
 }
 
@@ -157,10 +171,18 @@ fn aim_again(strand: Strand) -> vec3<f32> {
     for (var vertex = strand.held + 2u; vertex <= strand.edges; vertex++) {
         let moved = rods[moved_slot(strand, vertex, 0u)].xyz;
         let length = rest_before(strand, vertex).w;
-        aimed += keep_aim(strand, vertex, length, aim(rods[slot(strand, vertex, FRAME)], length, moved - before, NO_AIM));
+        aimed += keep_aim(strand, vertex, length, aim(frame_before_aim(strand, vertex), length, moved - before, NO_AIM));
         before = moved;
     }
     return aimed;
+}
+
+/// The frame that a guess was made from.
+fn frame_before_aim(strand: Strand, vertex: u32) -> vec4<f32> {
+    let guess = rods[slot(strand, vertex, GUESS)];
+    let by = rods[slot(strand, vertex, AIMED)].xyz;
+    let here = along(guess) - by;
+    return normalize(after(vec4(-cross(here, by), 2.0 + dot(here, by)), guess));
 }
 
 /// The rotation by an angle about an axis, given as their product.

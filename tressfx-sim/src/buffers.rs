@@ -145,7 +145,7 @@ pub(crate) const STEPS: usize = FIRST + ColliderBuffer::SUB_STEPS;
 
 impl RodBuffers {
     /// Of a vertex, in the buffer of the state.
-    const SLOTS: u64 = 16;
+    const SLOTS: u64 = 14;
 
     fn new(backend: &mut dyn Backend, shape: StrandShape, has_volume: bool) -> Result<Self> {
         let pushes = if has_volume { 16 * u64::from(shape.guide_vertices()) } else { 0 };

@@ -54,6 +54,7 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("integrate", include_str!("../shaders/integrate.wgsl")),
     ("joint", include_str!("../shaders/joint.wgsl")),
     ("joint_matrix", include_str!("../shaders/joint_matrix.wgsl")),
+    ("left", include_str!("../shaders/left.wgsl")),
     ("lengths", include_str!("../shaders/lengths.wgsl")),
     ("local_shape", include_str!("../shaders/local_shape.wgsl")),
     ("nodes", include_str!("../shaders/nodes.wgsl")),

@@ -1,0 +1,58 @@
+// What the elimination leaves of an edge for the sweep back. Two matrices are stored in 16 bits a number: what is lost of them is lost of a step of
+// Newton's method, one part in 4,000 of it at most, and the next round makes up for it.
+
+import package::rod::{LEFT, Strand, rods, slot};
+
+/// The rotation of the edge is `free + turn - behind * turn - by_shift * shift / scale`, with the rotation of its parent, the displacement of the
+/// vertex before it, and `scale_of` its length.
+struct Left {
+    free: vec3<f32>,
+    /// By how much it stays behind its parent.
+    behind: mat3x3<f32>,
+    by_shift: mat3x3<f32>,
+}
+
+/// By this, neither matrix has more than some thousands: the root of what `LEAST_TWIST` and `LEAST_PIVOT` leave between the stiffest direction
+/// and the softest. 16 bits go to 65,504.
+fn scale_of(strand: Strand, length: f32) -> f32 {
+    return max(length, strand.shortest_span);
+}
+
+/// As it is stored: a column of both matrices and a component of `free` each.
+struct Packed { first: vec4<f32>, second: vec4<f32>, third: vec4<f32> }
+
+fn packed_left(strand: Strand, vertex: u32) -> Packed {
+    return Packed(rods[slot(strand, vertex, LEFT)], rods[slot(strand, vertex, LEFT + 1u)], rods[slot(strand, vertex, LEFT + 2u)]);
+}
+
+fn store_left(strand: Strand, vertex: u32, left: Left) {
+    rods[slot(strand, vertex, LEFT)] = vec4(paired(left.behind[0], left.by_shift[0]), left.free.x);
+    rods[slot(strand, vertex, LEFT + 1u)] = vec4(paired(left.behind[1], left.by_shift[1]), left.free.y);
+    rods[slot(strand, vertex, LEFT + 2u)] = vec4(paired(left.behind[2], left.by_shift[2]), left.free.z);
+}
+
+fn left_of(packed: Packed) -> Left {
+    let first = unpaired(packed.first.xyz);
+    let second = unpaired(packed.second.xyz);
+    let third = unpaired(packed.third.xyz);
+    let free = vec3(packed.first.w, packed.second.w, packed.third.w);
+    return Left(free, mat3x3(first.a, second.a, third.a), mat3x3(first.b, second.b, third.b));
+}
+
+struct Pair { a: vec3<f32>, b: vec3<f32> }
+
+/// A component of both in each of three numbers.
+fn paired(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let x = pack2x16float(vec2(a.x, b.x));
+    let y = pack2x16float(vec2(a.y, b.y));
+    let z = pack2x16float(vec2(a.z, b.z));
+    return bitcast<vec3<f32>>(vec3(x, y, z));
+}
+
+fn unpaired(pairs: vec3<f32>) -> Pair {
+    let bits = bitcast<vec3<u32>>(pairs);
+    let x = unpack2x16float(bits.x);
+    let y = unpack2x16float(bits.y);
+    let z = unpack2x16float(bits.z);
+    return Pair(vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y));
+}
