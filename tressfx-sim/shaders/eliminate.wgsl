@@ -47,12 +47,12 @@ struct Begin {
 struct Pulled { place: vec3<f32>, free: vec3<f32> }
 
 fn pulled(strand: Strand, vertex: u32, row: Row, moving: vec3<f32>) -> Pulled {
-    let carry = strand.carry.x * row.moved.xyz + strand.carry.y * row.moved_before + strand.carry.z * row.moved_earlier;
+    let carry = strand.carry.x * row.moved + strand.carry.y * row.moved_before + strand.carry.z * row.moved_earlier;
     var free = carry - moving + strand.fall;
     @if(volume) {
         free += strand.length * strand.length * rods[push_slot(strand.guide, vertex)].xyz;
     }
-    return Pulled(strand.past * row.moved.xyz - moving, free);
+    return Pulled(strand.past * row.moved - moving, free);
 }
 
 /// The mass of a vertex with what acts on it in proportion to its place, and the force.

@@ -17,11 +17,11 @@ import package::wind::wind_of;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
 const SLOTS: u32 = 14u;
-/// What the vertex moved by in each of the last sub-steps, in turns, and its inverse mass.
+/// What the vertex moved by in each of the last sub-steps, in turns, and by how much its edge rolled about itself, rad.
 const MOVED: u32 = 0u;
 const MOVES: u32 = 4u;
-/// The frame of the edge; and what its direction has changed by in this sub-step, with the length of the edge. Not where no other round follows, unless
-/// something else asks for them.
+/// The frame of the edge; and what its direction has changed by in this sub-step, with its length. Not where no other round follows, unless something else
+/// asks for them.
 const FRAME: u32 = 4u;
 const TURNED: u32 = 5u;
 /// The frame that the next sub-step begins with; and what the direction changes by with it, with the length; see `aim`.
@@ -35,8 +35,8 @@ const LAST_STRAIN: u32 = 12u;
 /// How far the friction of the edge is stretched, and the side that it touches.
 const TOUCH: u32 = 13u;
 
-/// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved where the edges behind
-/// the first free one take their guesses, and `Marks`;
+/// The root has no edge before it. Its slots of edges are those of the strand: by what the tip is moved past the root where the
+/// edges take their guesses, and `Marks`;
 const BEGIN: u32 = GUESS;
 /// the lengths of the last two sub-steps, and the first and the last vertex behind an edge that was near a collider;
 const LENGTHS: u32 = TOUCH;
@@ -80,8 +80,6 @@ struct Strand {
     carry: vec3<f32>,
     /// What the last one is multiplied by: the part of that which is no velocity.
     past: f32,
-    /// The displacement by the velocity, of the last two.
-    speed: vec2<f32>,
 }
 
 /// How a strand came out of the last sub-step.
@@ -130,7 +128,6 @@ fn strand_of(guide: u32) -> Strand {
     strand.length = select(step.length, step.length * (2.0 / 3.0), has_past);
     strand.fall = step.gravity * select(1.0, 4.0 / 9.0, has_past);
     strand.past = select(0.0, 1.0 / 3.0, has_past);
-    strand.speed = now;
     // Of BDF2: two thirds of (4 times the last displacement by the velocity - that before) / 3.
     let second = vec3(8.0 * now, 0.0) - vec3(0.0, 2.0 * before);
     strand.carry = select(vec3(now, 0.0), second / 9.0 + vec3(1.0 / 3.0, 0.0, 0.0), has_past);
@@ -187,8 +184,8 @@ fn along(frame: vec4<f32>) -> vec3<f32> {
 
 /// A vertex and the edge before it, at the beginning of a round.
 struct Row {
-    /// What the vertex moved by one, two and three sub-steps ago, and its inverse mass.
-    moved: vec4<f32>,
+    /// What the vertex moved by one, two and three sub-steps ago.
+    moved: vec3<f32>,
     moved_before: vec3<f32>,
     moved_earlier: vec3<f32>,
     /// The frame as far as it is known, and what the direction has changed by. From the frames before and after a short sub-step that
@@ -202,7 +199,7 @@ struct Row {
 /// The row of a vertex; of the root, what it moved by alone. The first round begins with the guess.
 fn row_of(strand: Strand, vertex: u32, is_first_round: bool) -> Row {
     var row: Row;
-    row.moved = rods[moved_slot(strand, vertex, 1u)];
+    row.moved = rods[moved_slot(strand, vertex, 1u)].xyz;
     row.moved_before = rods[moved_slot(strand, vertex, 2u)].xyz;
     row.moved_earlier = rods[moved_slot(strand, vertex, 3u)].xyz;
     row.now = rods[slot(strand, vertex, select(FRAME, GUESS, is_first_round))];

@@ -14,14 +14,14 @@ import package::rod_touch::Found;
 import package::rod_touch::note_touches;
 import package::root::shape_of;
 import package::step::step;
-import package::substitute::{Aimed, NO_AIM_AT_ROOT, NO_LIMIT, Round, Start, aim, aim_again, keep_aim, substitute};
+import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_mass, keep_aim, substitute};
 
 @group(0) @binding(5) var<storage, read_write> counts: Counts;
 
 /// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
 const TOO_FAST: f32 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f32 = 2.0;
+const ANOTHER_ROUND: f32 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
 const SHORT: f32 = 1.0 / 120.0;
 
@@ -45,7 +45,7 @@ fn rest_again(strand: Strand) {
     for (var i = 0u; i < step.vertices; i++) {
         let vertex = rest[i * step.guides + strand.guide];
         positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
-        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0, 0.0, 0.0, vertex.w); }
+        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0); }
         if (i > 0u) {
             let frame = frame_at_rest(strand, i);
             rods[slot(strand, i, FRAME)] = frame;
@@ -66,36 +66,27 @@ fn carry_held(strand: Strand) -> Start {
     @if(colliders) {
         start.surface = surface_way(strand);
     }
-    let mass = rods[moved_slot(strand, 0u, 1u)].w;
-    rods[moved_slot(strand, 0u, 0u)] = vec4(start.moving, mass);
-    positions[strand.guide] = vec4(strand.root_now, mass);
+    rods[moved_slot(strand, 0u, 0u)] = vec4(start.moving, 0.0);
+    positions[strand.guide] = vec4(strand.root_now, inverse_mass(strand, 0u));
     for (var vertex = 1u; vertex <= strand.held; vertex++) {
         let length = rest_before(strand, vertex).w;
         start.parent = frame_at_rest(strand, vertex);
         let axis = along(start.parent);
         start.moving += length * (axis - along(rods[slot(strand, vertex, FRAME)]));
         start.place += length * axis;
-        let mass = rods[moved_slot(strand, vertex, 1u)].w;
-        rods[moved_slot(strand, vertex, 0u)] = vec4(start.moving, mass);
+        rods[moved_slot(strand, vertex, 0u)] = vec4(start.moving, 0.0);
         rods[slot(strand, vertex, FRAME)] = start.parent;
-        positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + start.place, mass);
+        positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + start.place, inverse_mass(strand, vertex));
     }
     return start;
 }
 
-/// What the first round begins with. Of the guess only the first free edge asks where the root is.
+/// What the first round begins with: the guesses, from where the root gets to.
 fn first_begin(strand: Strand, start: Start) -> Begin {
-    let vertex = strand.held + 1u;
-    let frame = rods[slot(strand, vertex, FRAME)];
-    let moved = rods[moved_slot(strand, vertex, 1u)].xyz;
-    let before = rods[moved_slot(strand, vertex, 2u)].xyz;
-    let length = rest_before(strand, vertex).w;
-    let apart = strand.speed.x * moved + strand.speed.y * before - start.moving;
-    let aimed = aim(frame, length, apart, NO_AIM_AT_ROOT);
     var begin: Begin;
     begin.is_first_round = true;
     begin.parent = start.parent;
-    begin.moving = start.moving + keep_aim(strand, vertex, length, aimed) + rods[slot(strand, 0u, BEGIN)].xyz;
+    begin.moving = start.moving + rods[slot(strand, 0u, BEGIN)].xyz;
     let tip = positions[strand.edges * step.strands + strand.guide].xyz;
     begin.place = tip - step.center_displacement + begin.moving - strand.root_now;
     @if(colliders) {

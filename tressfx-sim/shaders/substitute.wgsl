@@ -2,7 +2,7 @@
 
 import package::left::{Packed, left_of, packed_left, scale_of};
 import package::rod::{
-    AIMED, FRAME, GUESS, Strand, TURNED, along, moved_slot, positions, rest_before, rods, slot, speed_of,
+    AIMED, FRAME, GUESS, Strand, TURNED, along, moved_slot, positions, rest, rest_before, rods, slot, speed_of,
 };
 import package::step::step;
 import package::vector::{after, is_finite, turned_by};
@@ -11,13 +11,13 @@ import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, square
 
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
-/// The same for the first free edge: where its root is may be mostly rounding.
-const NO_AIM_AT_ROOT: f32 = 0.5;
 /// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
 const NO_LIMIT: f32 = 1e9;
 
-/// Nor is one that would be turned by more than what this cosine says.
+/// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f32 = -0.99;
+/// nor is one rolled that has rolled by more than this, rad.
+const MOST_ROLL: f32 = 0.5;
 
 /// What the first free edge hangs on.
 struct Start {
@@ -38,7 +38,7 @@ struct Round {
     /// What the tip has moved by, and where it is from the root.
     moving: vec3<f32>,
     place: vec3<f32>,
-    /// By what the tip is moved where the edges behind the first free one take their guesses.
+    /// By what the tip is moved past the root where the edges take their guesses.
     aimed: vec3<f32>,
     /// The edges that may touch something.
     @if(colliders) near: Range,
@@ -62,34 +62,48 @@ struct Hung {
     now: vec4<f32>,
     /// With the length.
     by: vec4<f32>,
-    /// Only where the round may be the last.
+    /// With the roll of the edge so far; the guess has that of the sub-step before.
     moved: vec4<f32>,
 }
 
-fn hung(strand: Strand, vertex: u32, is_first_round: bool, may_be_last: bool) -> Hung {
+fn hung(strand: Strand, vertex: u32, is_first_round: bool) -> Hung {
     var hung: Hung;
     hung.left = packed_left(strand, vertex);
     hung.now = rods[slot(strand, vertex, select(FRAME, GUESS, is_first_round))];
     hung.by = rods[slot(strand, vertex, select(TURNED, AIMED, is_first_round))];
-    if (may_be_last) { hung.moved = rods[moved_slot(strand, vertex, 1u)]; }
+    hung.moved = rods[moved_slot(strand, vertex, 1u)];
     return hung;
+}
+
+/// The inverse mass of a vertex. The solver asks only whether it is 0; where positions go, it goes with them.
+fn inverse_mass(strand: Strand, vertex: u32) -> f32 {
+    @if(!inverse_masses) {
+        if (vertex > strand.held) { return 1.0; }
+    }
+    return rest[vertex * step.guides + strand.guide].w;
 }
 
 /// A frame, and what the direction changes by on the way to it.
 struct Aimed { frame: vec4<f32>, by: vec3<f32> }
 
 /// The guess that Newton's method begins with: the edge is turned, the shortest way, to where its vertices would get with their
-/// velocities; by these its end would get `apart` from its beginning, and by more than `most` times its length it is not turned.
-fn aim(frame: vec4<f32>, length: f32, apart: vec3<f32>, most: f32) -> Aimed {
+/// velocities; by these its end would get `apart` from its beginning. And it rolls on about itself.
+fn aim(frame: vec4<f32>, roll: f32, length: f32, apart: vec3<f32>) -> Aimed {
     let here = along(frame);
     let there = length * here + apart;
     let size = sqrt(dot(there, there));
-    let is_wild = dot(apart, apart) >= most * most * length * length;
-    if (is_wild || dot(here, there) <= FOLDED * size) { return Aimed(frame, vec3(0.0)); }
+    let is_wild = dot(apart, apart) >= NO_AIM * NO_AIM * length * length;
+    if (is_wild || dot(here, there) <= FOLDED * size) { return Aimed(rolled(frame, roll), vec3(0.0)); }
     // By how much the distance of the ends grows; from their difference it would be rounding.
     let stretch = dot(apart, length * here + there) / (length + size);
     let by = (apart - stretch * here) / size;
-    return Aimed(normalize(after(vec4(cross(here, by), 2.0 + dot(here, by)), frame)), by);
+    return Aimed(rolled(after(vec4(cross(here, by), 2.0 + dot(here, by)), frame), roll), by);
+}
+
+/// A frame that is rolled about its own edge by an angle, or by a little less: by `roll - roll^3 / 12`. It need not have the length 1.
+fn rolled(frame: vec4<f32>, roll: f32) -> vec4<f32> {
+    let half = 0.5 * roll;
+    return normalize(frame + half * vec4(frame.y, -frame.x, frame.w, -frame.z));
 }
 
 /// Stores a guess; gives by what it moves the end of the edge.
@@ -107,36 +121,38 @@ fn needs_frames(limit: f32) -> bool {
 
 /// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames.
 fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32) -> Round {
-    let speed = speed_of(strand.has_past, 1.0);
     var round = nothing_done(start);
     var shift = vec3(0.0);
     var parent_turn = vec3(0.0);
-    var speed_before = vec3(0.0);
+    let speed = speed_of(strand.has_past, 1.0);
+    var speed_before = speed.x * start.moving + speed.y * rods[moved_slot(strand, strand.held, 1u)].xyz;
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
     @if(colliders) var past_before = squared_past_head(strand, start.place, start.moving);
-    var next = hung(strand, strand.held + 1u, is_first_round, true);
+    var next = hung(strand, strand.held + 1u, is_first_round);
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = next;
-        next = hung(strand, min(vertex + 1u, strand.edges), is_first_round, round.longest <= limit);
+        next = hung(strand, min(vertex + 1u, strand.edges), is_first_round);
         let length = here.by.w;
         let left = left_of(here.left);
         let scaled = shift / scale_of(strand, length);
-        let is_first_edge = vertex == strand.held + 1u;
         var turn = left.free + parent_turn - left.behind * parent_turn - left.by_shift * scaled;
         let size = sqrt(dot(turn, turn));
         turn *= min(1.0, most / max(size, most));
         round.longest = max(round.longest, min(size, most));
+        let direction = along(here.now);
+        let roll = here.moved.w + dot(turn, direction);
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
-        let by = here.by.xyz + turned_by(rotation, along(here.now));
+        let by = here.by.xyz + turned_by(rotation, direction);
         @if(colliders) let place_before = round.place;
-        shift += length * cross(turn, along(here.now));
+        shift += length * cross(turn, direction);
         round.moving += length * by;
         round.place += length * along(now);
-        if (is_first_edge || needs_frames(limit)) {
+        if (needs_frames(limit)) {
             rods[slot(strand, vertex, FRAME)] = now;
             rods[slot(strand, vertex, TURNED)] = vec4(by, length);
+            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, roll);
         }
         @if(colliders) {
             let past = squared_past_head(strand, round.place, round.moving);
@@ -146,13 +162,12 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             past_before = past;
         }
         if (round.longest <= limit) {
-            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, here.moved.w);
-            positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, here.moved.w);
+            let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
+            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
+            positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
             // By what the vertex would move in another sub-step.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
-            if (!is_first_edge) {
-                round.aimed += keep_aim(strand, vertex, length, aim(now, length, speed_here - speed_before, NO_AIM));
-            }
+            round.aimed += keep_aim(strand, vertex, length, aim(now, next_roll, length, speed_here - speed_before));
             speed_before = speed_here;
         }
         parent_turn = turn;
@@ -167,19 +182,20 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
 /// Takes the guesses once more, with velocities of first order, where a strand was too fast for the others.
 fn aim_again(strand: Strand) -> vec3<f32> {
     var aimed = vec3(0.0);
-    var before = rods[moved_slot(strand, strand.held + 1u, 0u)].xyz;
-    for (var vertex = strand.held + 2u; vertex <= strand.edges; vertex++) {
-        let moved = rods[moved_slot(strand, vertex, 0u)].xyz;
+    var before = rods[moved_slot(strand, strand.held, 0u)].xyz;
+    for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
+        let moved = rods[moved_slot(strand, vertex, 0u)];
         let length = rest_before(strand, vertex).w;
-        aimed += keep_aim(strand, vertex, length, aim(frame_before_aim(strand, vertex), length, moved - before, NO_AIM));
-        before = moved;
+        let frame = frame_before_aim(strand, vertex, moved.w);
+        aimed += keep_aim(strand, vertex, length, aim(frame, moved.w, length, moved.xyz - before));
+        before = moved.xyz;
     }
     return aimed;
 }
 
-/// The frame that a guess was made from.
-fn frame_before_aim(strand: Strand, vertex: u32) -> vec4<f32> {
-    let guess = rods[slot(strand, vertex, GUESS)];
+/// The frame that a guess was made from, with this roll.
+fn frame_before_aim(strand: Strand, vertex: u32, roll: f32) -> vec4<f32> {
+    let guess = rolled(rods[slot(strand, vertex, GUESS)], -roll);
     let by = rods[slot(strand, vertex, AIMED)].xyz;
     let here = along(guess) - by;
     return normalize(after(vec4(-cross(here, by), 2.0 + dot(here, by)), guess));

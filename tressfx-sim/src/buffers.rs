@@ -38,6 +38,8 @@ pub(crate) struct SectionBuffers {
     pub(crate) roots: Option<RootBuffers>,
     /// What changes from sub-step to sub-step.
     pub(crate) steps: UniformArray<Step>,
+    /// Whether any vertex has another inverse mass than 1 that the root does not hold.
+    pub(crate) inverse_masses: bool,
     /// Whether the tip of any guide is pinned.
     pub(crate) pinned_tips: bool,
 }
@@ -47,8 +49,8 @@ pub(crate) struct SectionBuffers {
 pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
-    /// Sixteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
-    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 16 + slot) * GROUP + guide % GROUP`. Where hair meets hair, a `vec4<f32>` a
+    /// Fourteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
+    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 14 + slot) * GROUP + guide % GROUP`. Where hair meets hair, a `vec4<f32>` a
     /// vertex follows, vertex-major: the acceleration by the hair around it.
     pub(crate) state: BufferId,
 }
@@ -118,6 +120,7 @@ impl SectionBuffers {
             },
             roots: if own_roots { Some(RootBuffers::new(backend, shape.guides)?) } else { None },
             steps: UniformArray::new(backend, "hair.steps", STEPS)?,
+            inverse_masses: strands.rest.chunks(vertices).any(has_inverse_masses),
             pinned_tips: strands.rest.chunks(vertices).any(|strand| strand[vertices - 1].w == 0.0),
         })
     }
@@ -142,6 +145,11 @@ pub(crate) const ALONE: usize = 0;
 pub(crate) const FIRST: usize = 1;
 /// All of them.
 pub(crate) const STEPS: usize = FIRST + ColliderBuffer::SUB_STEPS;
+
+/// Whether a strand has another inverse mass than 1 behind the vertices that its root holds.
+fn has_inverse_masses(strand: &[Vec4]) -> bool {
+    strand.iter().skip_while(|vertex| vertex.w == 0.0).any(|vertex| vertex.w != 1.0)
+}
 
 impl RodBuffers {
     /// Of a vertex, in the buffer of the state.

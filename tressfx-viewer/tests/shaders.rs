@@ -145,6 +145,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "global_shape",
         "hair_output",
         "internal_damping",
+        "inverse_masses",
         "listed",
         "more_nodes",
         "morphs",

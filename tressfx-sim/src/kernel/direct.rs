@@ -29,6 +29,7 @@ pub(super) fn features(maker: &PassMaker, params: &SimParams, contacts: bool) ->
         .feature("fields", fields.is_some())
         .feature("internal_damping", params.internal_damping > 0.0)
         .feature("pull", params.pull_frequency > 0.0)
+        .feature("inverse_masses", maker.buffers.inverse_masses)
         .feature("pinned_tips", maker.buffers.pinned_tips)
         .feature("volume", maker.shared.volume.is_some())
 }

@@ -27,7 +27,7 @@ const NO_EDGE: f64 = 1e-12;
 /// Where an edge turns by more than this in the last round of a sub-step, rad, the strand's past says little about its future.
 const TOO_FAST: f64 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f64 = 2.0;
+const ANOTHER_ROUND: f64 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as the square of the sub-step: what a round leaves undone is a force that is
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
@@ -38,11 +38,10 @@ const TAKEN_UP: f64 = 0.125;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: the direction that it would get is no
 /// guess at all. With half of the length fast bars go through strands that they push.
 const NO_AIM: f64 = 2.0;
-/// The same for the first free edge, which asks where the root is. Of an edge of a micrometre that is mostly rounding, and a stiff joint
-/// that is thrown about by it in each sub-step takes the whole strand with it.
-const NO_AIM_AT_ROOT: f64 = 0.5;
-/// Nor is one that would be turned by more than what this cosine says.
+/// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f64 = -0.99;
+/// nor is one rolled that has rolled by more than this, rad.
+const MOST_ROLL: f64 = 0.5;
 
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
 const TOUCHING_ROUNDS: u32 = 4;
@@ -128,6 +127,8 @@ pub struct Rod {
     pub positions: Vec<DVec3>,
     /// What each vertex moved by in the last sub-step, in the world.
     pub displacements: Vec<DVec3>,
+    /// By how much each edge rolled about itself in the last sub-step, rad.
+    pub rolls: Vec<f64>,
     /// Velocities after the last sub-step, in the world.
     pub velocities: Vec<DVec3>,
     /// Velocities one sub-step before.
@@ -154,6 +155,7 @@ impl Rod {
         let mut rod = Self {
             positions: zeros.clone(),
             displacements: zeros.clone(),
+            rolls: vec![0.0; frames.len()],
             velocities: zeros.clone(),
             last_velocities: zeros.clone(),
             strains: vec![DVec3::ZERO; frames.len()],
@@ -297,27 +299,24 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 }
 
 /// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
-/// velocities, see [`NO_AIM`] and [`FOLDED`].
+/// velocities, see [`NO_AIM`] and [`FOLDED`], and rolls on about itself. Where the root gets to moves the strand as a whole: an edge that asked for it alone would
+/// be turned by what bends all that hangs on it.
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
-    let frames: Vec<_> = (0..rod.frames.len())
-        .map(|edge| {
-            if edge < rest.held {
-                return step.root * rest.frames[edge];
-            }
-            let held = step.root * rest.positions[edge] + step.root_displacement;
-            let from = if edge == rest.held { held } else { free(edge) };
-            let here = rod.frames[edge] * DVec3::Z;
-            let there = free(edge + 1) - from;
-            let apart = there.distance(rest.lengths[edge] * here);
-            let most = if edge == rest.held { NO_AIM_AT_ROOT } else { NO_AIM };
-            if apart >= most * rest.lengths[edge] || there.dot(here) <= FOLDED * there.length() {
-                return rod.frames[edge];
-            }
-            (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
-        })
-        .collect();
-    rod.frames = frames;
+    let aimed = |edge: usize| {
+        let here = rod.frames[edge] * DVec3::Z;
+        let there = free(edge + 1) - free(edge);
+        let apart = there.distance(rest.lengths[edge] * here);
+        if apart >= NO_AIM * rest.lengths[edge] || there.dot(here) <= FOLDED * there.length() {
+            return rod.frames[edge];
+        }
+        (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
+    };
+    let rolled = |edge: usize| match edge < rest.held {
+        true => step.root * rest.frames[edge],
+        false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rod.rolls[edge], 1.0).normalize(),
+    };
+    rod.frames = (0..rod.frames.len()).map(rolled).collect();
     rod.place(rest);
 }
 
@@ -341,6 +340,7 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
             rod.holding += TAKEN_UP * newton::hold_stiffness(motion.rest) * error;
         }
     }
+    rod.rolls.iter_mut().filter(|roll| roll.abs() > MOST_ROLL).for_each(|roll| *roll = 0.0);
     let strains = rod.strains_now(motion.rest, step.root);
     rod.last_strains = std::mem::replace(&mut rod.strains, strains);
     rod.has_past = calm;

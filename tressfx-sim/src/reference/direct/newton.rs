@@ -56,7 +56,9 @@ pub(super) fn round(motion: &Motion, rod: &mut Rod) -> f64 {
         let Eliminated { free, by_parent, by_place } = *left;
         let turn = (free + by_parent * parent - by_place * moved).clamp_length_max(most);
         longest = longest.max(turn.length());
-        moved += turn.cross(rod.frames[edge] * DVec3::Z) * rest.lengths[edge];
+        let along = rod.frames[edge] * DVec3::Z;
+        rod.rolls[edge] += turn.dot(along);
+        moved += turn.cross(along) * rest.lengths[edge];
         rod.frames[edge] = (DQuat::from_scaled_axis(turn) * rod.frames[edge]).normalize();
         parent = turn;
     }
