@@ -70,6 +70,35 @@ fn one_edge_is_a_pendulum() {
     assert!(errors[0] < 0.025 && errors[0] / errors[1] > 3.0 && errors[1] / errors[2] > 3.0, "{errors:?}");
 }
 
+/// Hair that hangs under a head that turns to and fro rolls about itself; where the guess rolls with it, a round is enough.
+#[test]
+fn the_guess_rolls_with_hair_that_hangs() {
+    let rest = line(32, DVec3::NEG_Y);
+    let yaw = |seconds: f64| DQuat::from_rotation_y((std::f64::consts::TAU * seconds).sin());
+    // The root is off the axis, so that the tip swings.
+    let place = |seconds: f64| yaw(seconds) * DVec3::new(0.05, 0.0, 0.0);
+    let play = |sub_step: f64, rolls: bool| {
+        let mut rod = Rod::at_rest(&rest, DQuat::IDENTITY);
+        let sub_steps = (1.0 / sub_step).round() as u32;
+        let rounds = |i: u32| {
+            let [before, now] = [i - 1, i].map(|i| f64::from(i) * sub_step);
+            let root_displacement = place(now) - place(before);
+            if !rolls {
+                rod.rolls.fill(0.0);
+            }
+            direct(&RodStep { root: yaw(now), root_displacement, ..step(sub_step, 0.02) }, &rest, &mut rod)
+        };
+        let rounds: u32 = (1..=sub_steps).map(rounds).sum();
+        (f64::from(rounds) / f64::from(sub_steps), tip(&rod))
+    };
+    let (_, exact) = play(SUB_STEP / 16.0, true);
+    let runs = [true, false].map(|rolls| play(SUB_STEP, rolls));
+    let [rolled, aimed] = runs.map(|(rounds, tip)| (rounds, tip.distance(exact) / LENGTH));
+    println!("rounds a sub-step, and tips off by so much of length: {rolled:.4?} rolled, {aimed:.4?} not");
+    assert!(rolled.0 < 1.2 && aimed.0 > 1.6, "{rolled:?} {aimed:?}");
+    assert!(rolled.1 < 0.05 && rolled.1 < 1.5 * aimed.1, "{rolled:?} {aimed:?}");
+}
+
 /// Released from the horizontal, with a bending length of 1 cm.
 fn released(vertices: usize, sub_step: f64, seconds: f64, mut each: impl FnMut(&RodStep, &RodRest, &Rod)) -> DVec3 {
     let (rest, step) = (line(vertices, DVec3::X), step(sub_step, 0.01));

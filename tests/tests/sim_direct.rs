@@ -56,10 +56,14 @@ fn the_kernel_does_what_its_f64_function_does() {
 
 /// Strands that are all alike, pinned at their first vertex: as many as `points` gives from the origin.
 fn strand_of(points: Vec<Vec3>, pinned: &[usize]) -> Strands {
+    let inverse_masses = (0..points.len()).map(|i| if pinned.contains(&i) { 0.0 } else { 1.0 }).collect();
+    strand_with(points, inverse_masses)
+}
+
+fn strand_with(points: Vec<Vec3>, inverse_masses: Vec<f32>) -> Strands {
     let count = points.len() as u32;
     let asset = HairAsset::new("line", AssetFormat::Builtin, points.iter().map(Vec3::to_array).collect(), vec![count]);
-    let masses = (0..points.len()).map(|i| if pinned.contains(&i) { 0.0 } else { 1.0 }).collect();
-    let asset = HairAsset { inverse_mass: Some(masses), ..asset };
+    let asset = HairAsset { inverse_mass: Some(inverse_masses), ..asset };
     let options = StrandOptions {
         follows: Some(0),
         metres_per_unit: Some(1.0),
@@ -147,6 +151,19 @@ fn both_backends_agree_to_the_bit() {
     one.play(&motion, 0.5, 60);
     other.play(&motion, 0.5, 60);
     assert_eq!(one.positions(0), other.positions(0));
+}
+
+/// The solver has masses of its own; those of the file go on with the positions, whatever they are.
+#[test]
+fn inverse_masses_go_with_positions() {
+    let points = || (0..8).map(|i| 0.02 * i as f32 * Vec3::new(0.6, -0.8, 0.0)).collect();
+    for inverse_masses in [[0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0], [0.0, 0.7, 2.0, 1e-3, 1.0, 0.3, 5.0, 0.0]] {
+        let strands = strand_with(points(), inverse_masses.to_vec());
+        let Some(mut rig) = rig(&strands, &SimParams::default()) else { return };
+        rig.play(&Motion::wild(&strands), 0.2, 60);
+        let found: Vec<f32> = rig.positions(0).iter().map(|position| position.w).collect();
+        assert_eq!(found, inverse_masses);
+    }
 }
 
 #[test]

@@ -168,8 +168,8 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
         turn = sum(turn, outer(LEAST_TWIST * trace(sum(turn, stiff)), axis));
         // A joint that is bent less than it wants holds its edges against rolling about themselves, which turns its bend out of the plane that it wants.
-        let roll = 0.5 * max(dot(own, cross(direction, axis)), 0.0);
-        turn = sum(turn, outer(roll, axis));
+        let against_roll = 0.5 * max(dot(own, cross(direction, axis)), 0.0);
+        turn = sum(turn, outer(against_roll, axis));
         let factors = factors_of(sum(turn, stiff));
         let behind = solved_columns(factors, whole(turn));
         let by_place = solved_columns(factors, transpose(mixed));
@@ -184,7 +184,7 @@ fn eliminate(strand: Strand, begin: Begin) -> Found {
         // Equal to `stiff * free - own`, without the difference of two large numbers.
         torque = torque_by(spring, solved(factors, torque)) - times(turn, solved(factors, own));
         mixed = by_spring(transpose(by_place), spring);
-        turn = sum(scaled(0.5, with_transpose(spring_by(spring, behind))), outer(roll, direction));
+        turn = sum(scaled(0.5, with_transpose(spring_by(spring, behind))), outer(against_roll, direction));
         pull += before.force;
 
         after_edge = before_edge;

@@ -11,13 +11,12 @@ import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, square
 
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
-/// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
-const NO_LIMIT: f32 = 1e9;
-
 /// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f32 = -0.99;
 /// nor is one rolled that has rolled by more than this, rad.
 const MOST_ROLL: f32 = 0.5;
+/// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
+const NO_LIMIT: f32 = 1e9;
 
 /// What the first free edge hangs on.
 struct Start {
@@ -119,7 +118,7 @@ fn needs_frames(limit: f32) -> bool {
     @if(!colliders && !internal_damping) { return limit < NO_LIMIT; }
 }
 
-/// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames.
+/// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames and rolls.
 fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32) -> Round {
     var round = nothing_done(start);
     var shift = vec3(0.0);
@@ -136,7 +135,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         let length = here.by.w;
         let left = left_of(here.left);
         let scaled = shift / scale_of(strand, length);
-        var turn = left.free + parent_turn - left.behind * parent_turn - left.by_shift * scaled;
+        var turn = left.free + parent_turn - left.behind * parent_turn - left.by_place * scaled;
         let size = sqrt(dot(turn, turn));
         turn *= min(1.0, most / max(size, most));
         round.longest = max(round.longest, min(size, most));
@@ -165,7 +164,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
             rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
             positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
-            // By what the vertex would move in another sub-step.
+            // By what the vertex would move in another sub-step of this length.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
             round.aimed += keep_aim(strand, vertex, length, aim(now, next_roll, length, speed_here - speed_before));
             speed_before = speed_here;

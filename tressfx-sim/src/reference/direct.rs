@@ -267,15 +267,16 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// One sub-step.
-pub fn direct(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
+/// One sub-step; gives how many rounds of Newton's method it took.
+pub fn direct(step: &RodStep, rest: &RodRest, rod: &mut Rod) -> u32 {
     let mut motion = Motion::new(step, rest, rod);
     aim(step, rest, rod);
-    let mut turned = 0.0;
+    let (mut turned, mut rounds) = (0.0, 0);
     let mut touches = vec![Touch::default(); rod.frames.len()];
     for round in 1..=MOST_ROUNDS {
         motion.along = directions(rod);
         turned = newton::round(&motion, rod);
+        rounds = round;
         rod.place(rest);
         touches.splice(rest.held.., (rest.held..rod.frames.len()).map(|edge| motion.touch(rod, edge)));
         let settled = turned < SETTLED;
@@ -289,6 +290,7 @@ pub fn direct(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let calm = turned < TOO_FAST && !touches.iter().any(|touch| touch.is_new);
     rod.touches = touches;
     finish(step, &motion, rod, calm);
+    rounds
 }
 
 /// The direction of the hair at each vertex: the mean of those of the edges beside it.
@@ -312,11 +314,11 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
         }
         (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
     };
-    let rolled = |edge: usize| match edge < rest.held {
+    let guess = |edge: usize| match edge < rest.held {
         true => step.root * rest.frames[edge],
         false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rod.rolls[edge], 1.0).normalize(),
     };
-    rod.frames = (0..rod.frames.len()).map(rolled).collect();
+    rod.frames = (0..rod.frames.len()).map(guess).collect();
     rod.place(rest);
 }
 

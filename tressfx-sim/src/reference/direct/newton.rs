@@ -131,8 +131,8 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     // that it wants. Its spring knows nothing of that: without it, rounds move away from their end where joints want to be bent more
     // than twice as much as they are, as those do that make up for sag. One of 131,072 strands left its rest so.
     let before = if edge == 0 { along } else { parent * DVec3::Z };
-    let roll = 0.5 * own.dot(before.cross(along)).max(0.0);
-    turn += roll * outer(along, along);
+    let against_roll = 0.5 * own.dot(before.cross(along)).max(0.0);
+    turn += against_roll * outer(along, along);
     let inverse = (turn + spring).inverse();
     let by_parent = inverse * spring;
     let by_place = inverse * mixed.transpose();
@@ -141,7 +141,7 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     *beyond = Beyond {
         place: symmetric(beyond.place + contacts.place - mixed * by_place) + mass,
         mixed: mixed * by_parent,
-        turn: symmetric(turn * by_parent) + roll * outer(before, before),
+        turn: symmetric(turn * by_parent) + against_roll * outer(before, before),
         force: beyond.force + contacts.force - mixed * free + force,
         // Equal to `spring * inverse * (torque + own) - own`, without the difference of two large numbers.
         torque: by_parent.transpose() * torque - turn * (inverse * own),
