@@ -2,7 +2,7 @@
 
 mod support;
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec3, Vec4};
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_conformance::rod::elastica;
 use tressfx_conformance::sim::{Motion, REAL, Rig, builtin, lengths, random_strands, real, strand_errors};
@@ -164,6 +164,26 @@ fn inverse_masses_go_with_positions() {
         let found: Vec<f32> = rig.positions(0).iter().map(|position| position.w).collect();
         assert_eq!(found, inverse_masses);
     }
+}
+
+/// Without it kernels keep no strains: what joints have long been bent by must not count as their rate.
+#[test]
+fn damping_that_is_turned_on_moves_nothing_that_rests() {
+    let strands = builtin("long", 100);
+    let Some(mut rig) = rig(&strands, &SimParams::default()) else { return };
+    let still = Motion::still(&strands);
+    rig.play(&still, 1.0, 60);
+    let before = rig.positions(0);
+    let damped = SimParams { internal_damping: 0.05, ..SimParams::default() };
+    rig.sim.set_params(&mut *rig.backend, 0, damped).unwrap();
+    for _ in 0..4 {
+        rig.frame(&still.input(1.0, 1.0 / 60.0));
+    }
+    let moved = |(now, before): (&Vec4, &Vec4)| now.truncate().distance(before.truncate());
+    let most = rig.positions(0).iter().zip(&before).map(moved).fold(0.0, f32::max);
+    let longest = lengths(&strands).into_iter().fold(0.0, f64::max) as f32;
+    println!("damping turned on moves hair at rest by {:.1e} of the longest strand", most / longest);
+    assert!(most < 1e-5 * longest, "{most} of {longest}");
 }
 
 #[test]

@@ -7,6 +7,7 @@ use tressfx_core::id::BufferId;
 use tressfx_core::pass::PassList;
 
 use crate::buffers::{ColliderBuffer, SectionBuffers, storage};
+use crate::clock::SubStep;
 use crate::kernel::direct::direct;
 use crate::kernel::direct_near::direct_near;
 use crate::kernel::moved::moved;
@@ -20,8 +21,9 @@ use crate::params::SimParams;
 use crate::section_desc::SectionDesc;
 use crate::solver::Solver;
 use crate::stage::Stage;
-use crate::step::SectionInfo;
+use crate::step::{SectionInfo, Step};
 use crate::volume::Volume;
+use crate::wind::Wind;
 
 /// What all sections share.
 #[derive(Debug)]
@@ -45,6 +47,8 @@ pub(crate) struct SimSection {
     pub(crate) info: SectionInfo,
     solver: Solver,
     params: SimParams,
+    /// Sub-steps until the strains of two are known, which damping asks for: kernels without damping keep none.
+    strains_missing: u32,
     passes: Passes,
 }
 
@@ -73,7 +77,7 @@ impl SimSection {
         let buffers = SectionBuffers::new(backend, desc, center, shared.volume.is_some())?;
         let passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &buffers, shared }, &desc.params)?;
         let info = SectionInfo::new(desc.strands, desc.solver);
-        Ok(Self { buffers, info, solver: desc.solver, params: desc.params.clone(), passes })
+        Ok(Self { buffers, info, solver: desc.solver, params: desc.params.clone(), strains_missing: 0, passes })
     }
 
     pub(crate) fn params(&self) -> &SimParams {
@@ -96,8 +100,21 @@ impl SimSection {
         if specialization(&params, vertices) != specialization(&self.params, vertices) {
             self.passes = Passes::new(&mut PassMaker { backend, kernels, buffers: &self.buffers, shared }, &params)?;
         }
+        if self.params.internal_damping == 0.0 {
+            self.strains_missing = 2;
+        }
         self.params = params;
         Ok(())
+    }
+
+    /// What its kernels are told of the next sub-step.
+    pub(crate) fn next_step(&mut self, sub_step: &SubStep, wind: Option<&Wind>) -> Step {
+        let mut step = Step::new(&self.params, &self.info, sub_step, wind);
+        if self.strains_missing > 0 {
+            self.strains_missing -= 1;
+            step.internal_damping = 0.0;
+        }
+        step
     }
 
     /// What measures how far its guides move.

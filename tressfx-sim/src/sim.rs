@@ -439,12 +439,12 @@ impl HairSim {
         };
         let ranges: Vec<_> = sub_steps.iter().map(&mut each_section).collect();
         self.upload_colliders(list, &colliders);
-        for (index, section) in self.sections.iter().enumerate() {
+        let root_place = self.root_place;
+        for (index, section) in self.sections.iter_mut().enumerate() {
             let step = |(sub_step, ranges): (&SubStep, &Vec<[u32; 2]>)| {
                 let [first, end] = ranges[index];
-                Step::new(section.params(), &section.info, sub_step, input.wind.as_ref())
-                    .with_capsules(first, end)
-                    .with_root_place(self.root_place)
+                let step = section.next_step(sub_step, input.wind.as_ref());
+                step.with_capsules(first, end).with_root_place(root_place)
             };
             let steps: Vec<_> = sub_steps.iter().zip(&ranges).map(step).collect();
             section.buffers.steps.upload(list, FIRST, &steps);
