@@ -118,7 +118,8 @@ fn needs_frames(limit: f32) -> bool {
     @if(!colliders && !internal_damping) { return limit < NO_LIMIT; }
 }
 
-/// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is not kept, but for the frames and rolls.
+/// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is
+/// not kept, but for the frames and rolls.
 fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32) -> Round {
     var round = nothing_done(start);
     var shift = vec3(0.0);

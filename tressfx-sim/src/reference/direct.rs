@@ -301,8 +301,8 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 }
 
 /// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
-/// velocities, see [`NO_AIM`] and [`FOLDED`], and rolls on about itself. Where the root gets to moves the strand as a whole: an edge that asked for it alone would
-/// be turned by what bends all that hangs on it.
+/// velocities, see [`NO_AIM`] and [`FOLDED`], and rolls on about itself. Where the root gets to moves the strand as a whole: an edge
+/// that asked for it alone would be turned by what bends all that hangs on it.
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
     let aimed = |edge: usize| {
