@@ -17,15 +17,14 @@ import package::wind::wind_of;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
 const SLOTS: u32 = 14u;
-/// What the vertex moved by in each of the last sub-steps, in turns, and by how much its edge rolled about itself, rad: in the last one by
-/// how much it rolls in the guess, and then so far.
+/// What the vertex moved by in each of the last sub-steps, in turns, and, in the last one, the `Rolls` of its edge.
 const MOVED: u32 = 0u;
 const MOVES: u32 = 4u;
 /// The frame of the edge; and what its direction has changed by in this sub-step, with its length. Not where no other round follows, unless something else
 /// asks for them.
 const FRAME: u32 = 4u;
 const TURNED: u32 = 5u;
-/// The frame that the next sub-step begins with; and what the direction changes by with it, with the length; see `aim`.
+/// The frame that the next sub-step begins with; and what the direction changes by with it, with the length, below 0 where the edge came back; see `aim`.
 const GUESS: u32 = 6u;
 const AIMED: u32 = 7u;
 /// What the elimination leaves of the edge, three of them: see `Left`.

@@ -12,6 +12,7 @@ import package::rod_near::{all_edges, is_any, surface_way};
 import package::rod_touch::Found;
 @if(contacts)
 import package::rod_touch::note_touches;
+import package::rolls::{Rolls, packed_rolls};
 import package::root::shape_of;
 import package::step::step;
 import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_mass, keep_aim, substitute};
@@ -21,7 +22,7 @@ import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_m
 /// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
 const TOO_FAST: f32 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f32 = 4.0;
+const ANOTHER_ROUND: f32 = 6.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
 const SHORT: f32 = 1.0 / 120.0;
 
@@ -42,14 +43,15 @@ const TAKEN_UP: f32 = 0.125;
 
 /// The strand goes to its rest pose, at rest.
 fn rest_again(strand: Strand) {
+    let no_rolls = packed_rolls(Rolls(0.0, 0.0));
     for (var i = 0u; i < step.vertices; i++) {
         let vertex = rest[i * step.guides + strand.guide];
         positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
-        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0); }
+        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(vec3(0.0), no_rolls); }
         if (i > 0u) {
             let frame = frame_at_rest(strand, i);
             rods[slot(strand, i, FRAME)] = frame;
-            keep_aim(strand, i, rest_before(strand, i).w, Aimed(frame, vec3(0.0)));
+            keep_aim(strand, i, rest_before(strand, i).w, false, Aimed(frame, vec3(0.0)));
         }
     }
     rods[slot(strand, 0u, BEGIN)] = vec4(0.0, 0.0, 0.0, packed_marks(Marks(strand.turn, false, false, false)));
@@ -139,6 +141,12 @@ fn longest_turn(found: Found) -> f32 {
     return select(LONGEST_TURN, TOUCHING_TURN, found.touching);
 }
 
+/// Whether an edge that comes back twice in a row is guessed to stay where it is. Short sub-steps have other rounds instead, and strands that touch something
+/// do too.
+fn may_stay(found: Found) -> bool {
+    return step.length > 0.99 * SHORT && !found.touching;
+}
+
 /// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no
 /// more than to where an edge may touch something.
 fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
@@ -156,7 +164,7 @@ fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
             if (is_end(round, found)) { break; }
         }
         let count = round.count + 1u;
-        round = substitute(strand, start, begin.is_first_round, longest_turn(found), limit_of(count));
+        round = substitute(strand, start, begin.is_first_round, longest_turn(found), limit_of(count), may_stay(found));
         round.count = count;
         @if(colliders && !contacts) {
             if (is_any(round.near)) { break; }
@@ -185,7 +193,7 @@ fn finish(strand: Strand, start: Start, round: Round) {
         near = vec2(f32(round.near.first), f32(round.near.last));
     }
     var aimed = round.aimed;
-    if (!calm && strand.has_past) { aimed = aim_again(strand); }
+    if (!calm) { aimed = aim_again(strand); }
     keep_hold(strand, round.place, calm);
     store_strains(strand, true);
     let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);

@@ -4,6 +4,7 @@ import package::left::{Packed, left_of, packed_left, scale_of};
 import package::rod::{
     AIMED, FRAME, GUESS, Strand, TURNED, along, moved_slot, positions, rest, rest_before, rods, slot, speed_of,
 };
+import package::rolls::{Rolls, packed_rolls, rolled_on, rolls_back, rolls_of};
 import package::step::step;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
@@ -11,10 +12,8 @@ import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, square
 
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
-/// Nor is one that would be turned by more than what this cosine says,
+/// Nor is one that would be turned by more than what this cosine says.
 const FOLDED: f32 = -0.99;
-/// nor is one rolled that has rolled by more than this, rad.
-const MOST_ROLL: f32 = 0.5;
 /// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
 const NO_LIMIT: f32 = 1e9;
 
@@ -59,9 +58,9 @@ fn nothing_done(start: Start) -> Round {
 struct Hung {
     left: Packed,
     now: vec4<f32>,
-    /// With the length.
+    /// With the length, whose sign says whether the edge came back in the last sub-step.
     by: vec4<f32>,
-    /// With the roll of the edge so far; the guess has that of the sub-step before.
+    /// With `Rolls`.
     moved: vec4<f32>,
 }
 
@@ -105,10 +104,10 @@ fn rolled(frame: vec4<f32>, roll: f32) -> vec4<f32> {
     return normalize(frame + half * vec4(frame.y, -frame.x, frame.w, -frame.z));
 }
 
-/// Stores a guess; gives by what it moves the end of the edge.
-fn keep_aim(strand: Strand, vertex: u32, length: f32, aimed: Aimed) -> vec3<f32> {
+/// Stores a guess, and whether the edge came back in the sub-step before it; gives by what it moves the end of the edge.
+fn keep_aim(strand: Strand, vertex: u32, length: f32, came_back: bool, aimed: Aimed) -> vec3<f32> {
     rods[slot(strand, vertex, GUESS)] = aimed.frame;
-    rods[slot(strand, vertex, AIMED)] = vec4(aimed.by, length);
+    rods[slot(strand, vertex, AIMED)] = vec4(aimed.by, select(length, -length, came_back));
     return length * aimed.by;
 }
 
@@ -119,13 +118,13 @@ fn needs_frames(limit: f32) -> bool {
 }
 
 /// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is
-/// not kept, but for the frames and rolls.
-fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32) -> Round {
+/// not kept, but for the frames and rolls. Where edges `may_stay`, one that comes back twice in a row is guessed to stay where it is.
+fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32, may_stay: bool) -> Round {
     var round = nothing_done(start);
     var shift = vec3(0.0);
     var parent_turn = vec3(0.0);
     let speed = speed_of(strand.has_past, 1.0);
-    var speed_before = speed.x * start.moving + speed.y * rods[moved_slot(strand, strand.held, 1u)].xyz;
+    var moved_before = rods[moved_slot(strand, strand.held, 1u)].xyz;
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
     @if(colliders) var past_before = squared_past_head(strand, start.place, start.moving);
@@ -133,7 +132,8 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let here = next;
         next = hung(strand, min(vertex + 1u, strand.edges), is_first_round);
-        let length = here.by.w;
+        let length = abs(here.by.w);
+        let came_back = here.by.w < 0.0;
         let left = left_of(here.left);
         let scaled = shift / scale_of(strand, length);
         var turn = left.free + parent_turn - left.behind * parent_turn - left.by_place * scaled;
@@ -141,7 +141,8 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         turn *= min(1.0, most / max(size, most));
         round.longest = max(round.longest, min(size, most));
         let direction = along(here.now);
-        let roll = here.moved.w + dot(turn, direction);
+        var rolls = rolls_of(here.moved.w);
+        rolls.so_far += dot(turn, direction);
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
         let by = here.by.xyz + turned_by(rotation, direction);
@@ -151,8 +152,8 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         round.place += length * along(now);
         if (needs_frames(limit)) {
             rods[slot(strand, vertex, FRAME)] = now;
-            rods[slot(strand, vertex, TURNED)] = vec4(by, length);
-            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, roll);
+            rods[slot(strand, vertex, TURNED)] = vec4(by, here.by.w);
+            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, packed_rolls(rolls));
         }
         @if(colliders) {
             let past = squared_past_head(strand, round.place, round.moving);
@@ -162,13 +163,17 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             past_before = past;
         }
         if (round.longest <= limit) {
-            let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
-            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
+            let next_rolls = packed_rolls(Rolls(rolled_on(rolls, may_stay, came_back), rolls.so_far));
+            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_rolls);
             positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
-            // By what the vertex would move in another sub-step of this length.
-            let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
-            round.aimed += keep_aim(strand, vertex, length, aim(now, next_roll, length, speed_here - speed_before));
-            speed_before = speed_here;
+            // By what the ends of the edge move against each other, and would in another sub-step of this length. A round may go too far, and where the guess goes
+            // on the same way, the next round goes back as far: so the guess stays.
+            let last = here.moved.xyz - moved_before;
+            let swings_back = dot(by, last) < 0.0;
+            let apart = select(speed.x * length * by + speed.y * last, vec3(0.0), may_stay && came_back && swings_back);
+            let guess = aim(now, rolls_of(next_rolls).so_far, length, apart);
+            round.aimed += keep_aim(strand, vertex, length, swings_back || rolls_back(rolls), guess);
+            moved_before = here.moved.xyz;
         }
         parent_turn = turn;
     }
@@ -185,9 +190,10 @@ fn aim_again(strand: Strand) -> vec3<f32> {
     var before = rods[moved_slot(strand, strand.held, 0u)].xyz;
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let moved = rods[moved_slot(strand, vertex, 0u)];
-        let length = rest_before(strand, vertex).w;
-        let frame = frame_before_aim(strand, vertex, moved.w);
-        aimed += keep_aim(strand, vertex, length, aim(frame, moved.w, length, moved.xyz - before));
+        let length = rods[slot(strand, vertex, AIMED)].w;
+        let roll = rolls_of(moved.w).so_far;
+        let guess = aim(frame_before_aim(strand, vertex, roll), roll, abs(length), moved.xyz - before);
+        aimed += keep_aim(strand, vertex, abs(length), length < 0.0, guess);
         before = moved.xyz;
     }
     return aimed;

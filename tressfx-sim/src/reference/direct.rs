@@ -27,7 +27,7 @@ const NO_EDGE: f64 = 1e-12;
 /// Where an edge turns by more than this in the last round of a sub-step, rad, the strand's past says little about its future.
 const TOO_FAST: f64 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f64 = 4.0;
+const ANOTHER_ROUND: f64 = 6.0;
 /// and in sub-steps shorter than this, s, by less, as the square of the sub-step: what a round leaves undone is a force that is
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
@@ -40,7 +40,7 @@ const TAKEN_UP: f64 = 0.125;
 const NO_AIM: f64 = 2.0;
 /// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f64 = -0.99;
-/// nor is one rolled that has rolled by more than this, rad.
+/// nor is one rolled that would roll by more than this, rad.
 const MOST_ROLL: f64 = 0.5;
 
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
@@ -127,8 +127,16 @@ pub struct Rod {
     pub positions: Vec<DVec3>,
     /// What each vertex moved by in the last sub-step, in the world.
     pub displacements: Vec<DVec3>,
+    /// What it moved by one sub-step before.
+    pub last_displacements: Vec<DVec3>,
     /// By how much each edge rolled about itself in the last sub-step, rad.
     pub rolls: Vec<f64>,
+    /// By how much it did so one sub-step before.
+    pub last_rolls: Vec<f64>,
+    /// Whether it came back in the last sub-step: swung or rolled against what it did one sub-step before.
+    pub came_back: Vec<bool>,
+    /// Whether anything was touched in the last round.
+    pub is_touching: bool,
     /// Velocities after the last sub-step, in the world.
     pub velocities: Vec<DVec3>,
     /// Velocities one sub-step before.
@@ -155,7 +163,11 @@ impl Rod {
         let mut rod = Self {
             positions: zeros.clone(),
             displacements: zeros.clone(),
+            last_displacements: zeros.clone(),
             rolls: vec![0.0; frames.len()],
+            last_rolls: vec![0.0; frames.len()],
+            came_back: vec![false; frames.len()],
+            is_touching: false,
             velocities: zeros.clone(),
             last_velocities: zeros.clone(),
             strains: vec![DVec3::ZERO; frames.len()],
@@ -303,9 +315,22 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 /// The guess that Newton's method begins with: each edge is turned, the shortest way, to where its vertices would get with their
 /// velocities, see [`NO_AIM`] and [`FOLDED`], and rolls on about itself. Where the root gets to moves the strand as a whole: an edge
 /// that asked for it alone would be turned by what bends all that hangs on it.
+///
+/// An edge that came back twice in a row, in each of the last two sub-steps, is guessed to stay where it is. A round may go too far; where the guess goes on
+/// the same way, the next round goes back as far, and a strand at rest would swing to and fro without end. Motion that sub-steps can follow turns back once: a
+/// guess that is not on its way, there alone, would be a push. Short sub-steps have other rounds instead, and strands that touch something do too.
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
+    let swings_back = |edge: usize| {
+        let turned = |moved: &[DVec3]| moved[edge + 1] - moved[edge];
+        turned(&rod.displacements).dot(turned(&rod.last_displacements)) < 0.0
+    };
+    let rolls_back = |edge: usize| rod.rolls[edge] * rod.last_rolls[edge] < 0.0;
+    let may_stay = step.length > 0.99 * SHORT && !rod.is_touching;
     let aimed = |edge: usize| {
+        if may_stay && rod.has_past && rod.came_back[edge] && swings_back(edge) {
+            return rod.frames[edge];
+        }
         let here = rod.frames[edge] * DVec3::Z;
         let there = free(edge + 1) - free(edge);
         let apart = there.distance(rest.lengths[edge] * here);
@@ -314,17 +339,35 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
         }
         (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
     };
+    let rolled_on = |edge: usize| {
+        let (roll, last) = (rod.rolls[edge], rod.last_rolls[edge]);
+        let steady = 2.0 * roll - last;
+        let next = match (may_stay, rolls_back(edge)) {
+            (false, _) => roll,
+            (true, true) if rod.came_back[edge] => 0.0,
+            (true, true) => roll,
+            // With the same acceleration, but not back.
+            (true, false) if steady * roll > 0.0 => steady,
+            (true, false) => 0.0,
+        };
+        if next.abs() > MOST_ROLL { 0.0 } else { next }
+    };
+    let rolls: Vec<_> = (0..rod.frames.len()).map(rolled_on).collect();
     let guess = |edge: usize| match edge < rest.held {
         true => step.root * rest.frames[edge],
-        false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rod.rolls[edge], 1.0).normalize(),
+        false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rolls[edge], 1.0).normalize(),
     };
+    let came_back = (0..rod.frames.len()).map(|edge| swings_back(edge) || rolls_back(edge)).collect();
     rod.frames = (0..rod.frames.len()).map(guess).collect();
+    rod.came_back = came_back;
+    rod.last_rolls = std::mem::replace(&mut rod.rolls, rolls);
     rod.place(rest);
 }
 
 /// The state that the next sub-step begins with.
 fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
     std::mem::swap(&mut rod.velocities, &mut rod.last_velocities);
+    std::mem::swap(&mut rod.displacements, &mut rod.last_displacements);
     for (vertex, before) in motion.before.iter().enumerate() {
         let displacement = rod.positions[vertex] - before;
         rod.displacements[vertex] = displacement;
@@ -342,7 +385,6 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
             rod.holding += TAKEN_UP * newton::hold_stiffness(motion.rest) * error;
         }
     }
-    rod.rolls.iter_mut().filter(|roll| roll.abs() > MOST_ROLL).for_each(|roll| *roll = 0.0);
     let strains = rod.strains_now(motion.rest, step.root);
     rod.last_strains = std::mem::replace(&mut rod.strains, strains);
     rod.has_past = calm;

@@ -50,6 +50,7 @@ pub(super) fn round(motion: &Motion, rod: &mut Rod) -> f64 {
     for edge in (rest.held..edges).rev() {
         eliminated[edge] = eliminate(motion, rod, edge, &mut beyond);
     }
+    rod.is_touching = beyond.touches;
     let most = if beyond.touches { TOUCHING_TURN } else { LONGEST_TURN };
     let (mut moved, mut parent, mut longest) = (DVec3::ZERO, DVec3::ZERO, 0.0_f64);
     for (edge, left) in eliminated.iter().enumerate().skip(rest.held) {
