@@ -1,5 +1,7 @@
 //! A simulation on the GPU, frame by frame.
 
+use std::time::{Duration, Instant};
+
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec4};
 use tressfx_core::backend::Run as Gpu;
@@ -75,6 +77,12 @@ impl<'a> Drive<'a> {
             }
         }
         Ok((tips, edges))
+    }
+
+    /// Goes on for so long on the clock, and is given up: a GPU that has waited for the answer to a case takes its time to raise its clocks.
+    pub(crate) fn warm_up(mut self, time: Duration) -> Result<()> {
+        let start = Instant::now();
+        (1..).take_while(|_| start.elapsed() < time).try_for_each(|frame| self.go(frame, FPS))
     }
 
     /// GPU time of 1/60 s of motion, ms: the median over pairs of frames, since a long sub-step takes two.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
+use std::time::{Duration, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -18,6 +18,8 @@ use crate::truth::{Truth, truth};
 
 /// Pairs of frames that are timed.
 const PAIRS: u32 = 6;
+/// What a GPU is given to do before that.
+const WARM_UP: Duration = Duration::from_millis(300);
 
 /// What is measured with, and where rows are kept.
 pub(crate) struct Measure {
@@ -111,6 +113,7 @@ impl Measure {
     fn row(&self, gpu: &mut dyn Gpu, case: &Case, method: &Method, answer: &Truth) -> Result<(Row, Tips)> {
         let adapter = gpu.caps().adapter.clone();
         let all = case.strands(self.extent.setting().timed, method.vertices)?;
+        Drive::new(gpu, &all, case, method)?.warm_up(WARM_UP)?;
         let ms = Drive::new(gpu, &all, case, method)?.milliseconds(PAIRS)?;
         let some = case.strands(self.sample(case), method.vertices)?;
         let (tips, edges) = Drive::new(gpu, &some, case, method)?.tips(FPS, case.frames, case.after, 2)?;
