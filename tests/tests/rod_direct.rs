@@ -95,7 +95,7 @@ fn the_guess_rolls_with_hair_that_hangs() {
     let runs = [true, false].map(|rolls| play(SUB_STEP, rolls));
     let [rolled, aimed] = runs.map(|(rounds, tip)| (rounds, tip.distance(exact) / LENGTH));
     println!("rounds a sub-step, and tips off by so much of length: {rolled:.4?} rolled, {aimed:.4?} not");
-    assert!(rolled.0 < 1.1 && aimed.0 > 1.2, "{rolled:?} {aimed:?}");
+    assert!(rolled.0 < 1.2 && aimed.0 > 1.6, "{rolled:?} {aimed:?}");
     assert!(rolled.1 < 0.05 && rolled.1 < 1.5 * aimed.1, "{rolled:?} {aimed:?}");
 }
 

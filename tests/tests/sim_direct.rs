@@ -33,21 +33,12 @@ fn both(strands: &Strands, params: &SimParams, motion: &Motion, frames: u32) -> 
     Some((errors, rig))
 }
 
-/// Of 65 strands one or two are so near to the limit of another round that rounding decides on it, and a round has as much to do as this.
-const ROUNDS_DIFFER: f64 = 3e-3;
-
-fn against_reference(name: &str, strands: &Strands, params: &SimParams) {
+fn against_reference(name: &str, strands: &Strands, params: &SimParams, allowed: f64) {
     let Some((errors, mut rig)) = both(strands, params, &Motion::wild(strands), 30) else { return };
     let at = |share: usize| errors[(errors.len() - 1) * share / 100];
     let edges = metrics::edge_error(strands, &rig.positions(0)).max;
-    let [most, nearly_all] = [at(95), at(99)];
-    println!(
-        "{name}: {:.1e} (median) {most:.1e} (95%) {nearly_all:.1e} (99%) {:.1e} (largest), edges {edges:.1e}",
-        at(50),
-        at(100)
-    );
-    assert!(most < 1e-4 && nearly_all < ROUNDS_DIFFER, "{name}: {most:e} (95%), {nearly_all:e} (99%)");
-    assert!(edges < 2e-5, "{name}: edges {edges:e}");
+    println!("{name}: {:.1e} (median) {:.1e} (99%) {:.1e} (largest), edges {edges:.1e}", at(50), at(99), at(100));
+    assert!(at(99) < allowed && edges < 2e-5, "{name}: {:e} (99%), edges {edges:e}", at(99));
 }
 
 #[test]
@@ -55,11 +46,11 @@ fn the_kernel_does_what_its_f64_function_does() {
     let damped = SimParams { internal_damping: 2e-3, pull_frequency: 1.0, ..SimParams::default() };
     for vertices in [2, 3, 16, 64] {
         let strands = random_strands(65, vertices, 1, 3);
-        against_reference(&format!("random, {vertices}"), &strands, &SimParams::default());
-        against_reference(&format!("random, {vertices}, damped"), &strands, &damped);
+        against_reference(&format!("random, {vertices}"), &strands, &SimParams::default(), 2e-4);
+        against_reference(&format!("random, {vertices}, damped"), &strands, &damped, 2e-4);
     }
     for name in ["long", "curly"] {
-        against_reference(name, &builtin(name, 100), &SimParams::default());
+        against_reference(name, &builtin(name, 100), &SimParams::default(), 2e-4);
     }
 }
 

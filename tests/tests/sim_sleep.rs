@@ -125,8 +125,8 @@ fn a_groom_at_rest_sleeps_and_wakes_in_the_frame_in_which_its_head_moves() {
 }
 
 /// Of the length of a strand: how far one that was asleep may be from one that was not, after half a second of motion. Those that are awake go on to
-/// settle, the slower the longer; and where an edge turns by about as much as asks for another round, that decides whether there is one.
-const MOVED: f64 = 5e-3;
+/// settle, the slower the longer.
+const MOVED: f64 = 1e-3;
 
 /// How far guides of two are apart at most, as a share of their length.
 fn farthest(one: &mut Rig, other: &mut Rig) -> f64 {

@@ -13,7 +13,7 @@ struct Left {
 }
 
 /// So `by_place` has about what `behind` has: at most some thousands, the root of what `LEAST_TWIST` and `LEAST_PIVOT` leave between the stiffest
-/// direction and the softest. 16 bits go to 65,504.
+/// direction and the softest. 16 bits go to 65,504; what is more, as in strands of kilometres that bend within millimetres, is cut off there.
 fn scale_of(strand: Strand, length: f32) -> f32 {
     return max(length, strand.shortest_span);
 }
@@ -45,8 +45,13 @@ struct Pair { a: vec3<f32>, b: vec3<f32> }
 /// less than 61,440, or it would become none that is finite.
 const NORMAL: u32 = 0x04000000u;
 
+/// More would be infinite.
+const LARGEST: vec3<f32> = vec3(60000.0);
+
 /// A component of both in each of three numbers.
-fn paired(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+fn paired(first: vec3<f32>, second: vec3<f32>) -> vec3<f32> {
+    let a = clamp(first, -LARGEST, LARGEST);
+    let b = clamp(second, -LARGEST, LARGEST);
     let x = pack2x16float(vec2(a.x, b.x));
     let y = pack2x16float(vec2(a.y, b.y));
     let z = pack2x16float(vec2(a.z, b.z));

@@ -17,7 +17,8 @@ import package::wind::wind_of;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
 const SLOTS: u32 = 14u;
-/// What the vertex moved by in each of the last sub-steps, in turns, and, in the last one, the `Rolls` of its edge.
+/// What the vertex moved by in each of the last sub-steps, in turns, and by how much its edge rolled about itself, rad: in the last one by
+/// how much it rolls in the guess, and then so far.
 const MOVED: u32 = 0u;
 const MOVES: u32 = 4u;
 /// The frame of the edge; and what its direction has changed by in this sub-step, with its length. Not where no other round follows, unless something else

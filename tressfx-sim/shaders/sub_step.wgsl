@@ -12,7 +12,6 @@ import package::rod_near::{all_edges, is_any, surface_way};
 import package::rod_touch::Found;
 @if(contacts)
 import package::rod_touch::note_touches;
-import package::rolls::{Rolls, packed_rolls};
 import package::root::shape_of;
 import package::step::step;
 import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_mass, keep_aim, substitute};
@@ -22,7 +21,7 @@ import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_m
 /// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
 const TOO_FAST: f32 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f32 = 6.0;
+const ANOTHER_ROUND: f32 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
 const SHORT: f32 = 1.0 / 120.0;
 
@@ -43,11 +42,10 @@ const TAKEN_UP: f32 = 0.125;
 
 /// The strand goes to its rest pose, at rest.
 fn rest_again(strand: Strand) {
-    let no_rolls = packed_rolls(Rolls(0.0, 0.0));
     for (var i = 0u; i < step.vertices; i++) {
         let vertex = rest[i * step.guides + strand.guide];
         positions[i * step.strands + strand.guide] = vec4(shape_of(strand.root, vertex.xyz), vertex.w);
-        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(vec3(0.0), no_rolls); }
+        for (var ago = 0u; ago < MOVES; ago++) { rods[slot(strand, i, MOVED + ago)] = vec4(0.0); }
         if (i > 0u) {
             let frame = frame_at_rest(strand, i);
             rods[slot(strand, i, FRAME)] = frame;

@@ -4,7 +4,6 @@ import package::left::{Packed, left_of, packed_left, scale_of};
 import package::rod::{
     AIMED, FRAME, GUESS, Strand, TURNED, along, moved_slot, positions, rest, rest_before, rods, slot, speed_of,
 };
-import package::rolls::{Rolls, packed_rolls, rolled_on, rolls_back, rolls_of};
 import package::step::step;
 import package::vector::{after, is_finite, turned_by};
 @if(colliders)
@@ -12,8 +11,10 @@ import package::rod_near::{Range, near_obstacles, no_edge, nothing_known, square
 
 /// An edge whose ends move against each other by more than so many times its length is not aimed: it could point anywhere.
 const NO_AIM: f32 = 2.0;
-/// Nor is one that would be turned by more than what this cosine says.
+/// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f32 = -0.99;
+/// nor is one rolled that has rolled by more than this, rad.
+const MOST_ROLL: f32 = 0.5;
 /// The limit of the last of a strand's rounds: whatever it comes to, there is no other.
 const NO_LIMIT: f32 = 1e9;
 
@@ -60,7 +61,7 @@ struct Hung {
     now: vec4<f32>,
     /// With the length, whose sign says whether the edge came back in the last sub-step.
     by: vec4<f32>,
-    /// With `Rolls`.
+    /// With the roll of the edge so far; the guess has that of the sub-step before.
     moved: vec4<f32>,
 }
 
@@ -141,8 +142,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         turn *= min(1.0, most / max(size, most));
         round.longest = max(round.longest, min(size, most));
         let direction = along(here.now);
-        var rolls = rolls_of(here.moved.w);
-        rolls.so_far += dot(turn, direction);
+        let roll = here.moved.w + dot(turn, direction);
         let rotation = rotation_by(turn);
         let now = normalize(after(rotation, here.now));
         let by = here.by.xyz + turned_by(rotation, direction);
@@ -153,7 +153,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         if (needs_frames(limit)) {
             rods[slot(strand, vertex, FRAME)] = now;
             rods[slot(strand, vertex, TURNED)] = vec4(by, here.by.w);
-            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, packed_rolls(rolls));
+            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, roll);
         }
         @if(colliders) {
             let past = squared_past_head(strand, round.place, round.moving);
@@ -163,16 +163,15 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             past_before = past;
         }
         if (round.longest <= limit) {
-            let next_rolls = packed_rolls(Rolls(rolled_on(rolls, may_stay, came_back), rolls.so_far));
-            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_rolls);
+            let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
+            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
             positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
             // By what the ends of the edge move against each other, and would in another sub-step of this length. A round may go too far, and where the guess goes
             // on the same way, the next round goes back as far: so the guess stays.
             let last = here.moved.xyz - moved_before;
             let swings_back = dot(by, last) < 0.0;
             let apart = select(speed.x * length * by + speed.y * last, vec3(0.0), may_stay && came_back && swings_back);
-            let guess = aim(now, rolls_of(next_rolls).so_far, length, apart);
-            round.aimed += keep_aim(strand, vertex, length, swings_back || rolls_back(rolls), guess);
+            round.aimed += keep_aim(strand, vertex, length, swings_back, aim(now, next_roll, length, apart));
             moved_before = here.moved.xyz;
         }
         parent_turn = turn;
@@ -191,8 +190,8 @@ fn aim_again(strand: Strand) -> vec3<f32> {
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let moved = rods[moved_slot(strand, vertex, 0u)];
         let length = rods[slot(strand, vertex, AIMED)].w;
-        let roll = rolls_of(moved.w).so_far;
-        let guess = aim(frame_before_aim(strand, vertex, roll), roll, abs(length), moved.xyz - before);
+        let frame = frame_before_aim(strand, vertex, moved.w);
+        let guess = aim(frame, moved.w, abs(length), moved.xyz - before);
         aimed += keep_aim(strand, vertex, abs(length), length < 0.0, guess);
         before = moved.xyz;
     }

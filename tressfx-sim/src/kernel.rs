@@ -62,7 +62,6 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("rod_contact", include_str!("../shaders/rod_contact.wgsl")),
     ("rod_near", include_str!("../shaders/rod_near.wgsl")),
     ("rod_touch", include_str!("../shaders/rod_touch.wgsl")),
-    ("rolls", include_str!("../shaders/rolls.wgsl")),
     ("root", include_str!("../shaders/root.wgsl")),
     ("root_frame", include_str!("../shaders/root_frame.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),

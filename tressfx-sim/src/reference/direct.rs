@@ -27,7 +27,7 @@ const NO_EDGE: f64 = 1e-12;
 /// Where an edge turns by more than this in the last round of a sub-step, rad, the strand's past says little about its future.
 const TOO_FAST: f64 = 0.5;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
-const ANOTHER_ROUND: f64 = 6.0;
+const ANOTHER_ROUND: f64 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as the square of the sub-step: what a round leaves undone is a force that is
 /// missing. With a constant limit strands gain energy where sub-steps are short, and the error falls only with the sub-step
 /// itself.
@@ -40,7 +40,7 @@ const TAKEN_UP: f64 = 0.125;
 const NO_AIM: f64 = 2.0;
 /// Nor is one that would be turned by more than what this cosine says,
 const FOLDED: f64 = -0.99;
-/// nor is one rolled that would roll by more than this, rad.
+/// nor is one rolled that has rolled by more than this, rad.
 const MOST_ROLL: f64 = 0.5;
 
 /// Where something is touched, there are at least so many rounds, unless no edge turns by more than `SETTLED`, rad,
@@ -131,9 +131,7 @@ pub struct Rod {
     pub last_displacements: Vec<DVec3>,
     /// By how much each edge rolled about itself in the last sub-step, rad.
     pub rolls: Vec<f64>,
-    /// By how much it did so one sub-step before.
-    pub last_rolls: Vec<f64>,
-    /// Whether it came back in the last sub-step: swung or rolled against what it did one sub-step before.
+    /// Whether it came back in the last sub-step: turned against what it did one sub-step before.
     pub came_back: Vec<bool>,
     /// Whether anything was touched in the last round.
     pub is_touching: bool,
@@ -165,7 +163,6 @@ impl Rod {
             displacements: zeros.clone(),
             last_displacements: zeros.clone(),
             rolls: vec![0.0; frames.len()],
-            last_rolls: vec![0.0; frames.len()],
             came_back: vec![false; frames.len()],
             is_touching: false,
             velocities: zeros.clone(),
@@ -325,7 +322,6 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
         let turned = |moved: &[DVec3]| moved[edge + 1] - moved[edge];
         turned(&rod.displacements).dot(turned(&rod.last_displacements)) < 0.0
     };
-    let rolls_back = |edge: usize| rod.rolls[edge] * rod.last_rolls[edge] < 0.0;
     let may_stay = step.length > 0.99 * SHORT && !rod.is_touching;
     let aimed = |edge: usize| {
         if may_stay && rod.has_past && rod.came_back[edge] && swings_back(edge) {
@@ -339,28 +335,13 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
         }
         (shortest_turn(here, there.normalize()) * rod.frames[edge]).normalize()
     };
-    let rolled_on = |edge: usize| {
-        let (roll, last) = (rod.rolls[edge], rod.last_rolls[edge]);
-        let steady = 2.0 * roll - last;
-        let next = match (may_stay, rolls_back(edge)) {
-            (false, _) => roll,
-            (true, true) if rod.came_back[edge] => 0.0,
-            (true, true) => roll,
-            // With the same acceleration, but not back.
-            (true, false) if steady * roll > 0.0 => steady,
-            (true, false) => 0.0,
-        };
-        if next.abs() > MOST_ROLL { 0.0 } else { next }
-    };
-    let rolls: Vec<_> = (0..rod.frames.len()).map(rolled_on).collect();
     let guess = |edge: usize| match edge < rest.held {
         true => step.root * rest.frames[edge],
-        false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rolls[edge], 1.0).normalize(),
+        false => aimed(edge) * DQuat::from_xyzw(0.0, 0.0, 0.5 * rod.rolls[edge], 1.0).normalize(),
     };
-    let came_back = (0..rod.frames.len()).map(|edge| swings_back(edge) || rolls_back(edge)).collect();
+    let came_back = (0..rod.frames.len()).map(swings_back).collect();
     rod.frames = (0..rod.frames.len()).map(guess).collect();
     rod.came_back = came_back;
-    rod.last_rolls = std::mem::replace(&mut rod.rolls, rolls);
     rod.place(rest);
 }
 
@@ -385,6 +366,7 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
             rod.holding += TAKEN_UP * newton::hold_stiffness(motion.rest) * error;
         }
     }
+    rod.rolls.iter_mut().filter(|roll| roll.abs() > MOST_ROLL).for_each(|roll| *roll = 0.0);
     let strains = rod.strains_now(motion.rest, step.root);
     rod.last_strains = std::mem::replace(&mut rod.strains, strains);
     rod.has_past = calm;
