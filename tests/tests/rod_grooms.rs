@@ -145,7 +145,7 @@ fn pushed(strands: &Strands, frame: u32) -> StepInput<'static> {
 /// Frames of a push and of four seconds behind it.
 const PUSHED: u32 = 252;
 /// What hair still moves by then in two frames, as a share of its length, at most.
-const CALM: f64 = 8e-5;
+const CALM: f64 = 4e-5;
 
 /// The most that a vertex moves by, as a share of the length of its strand.
 fn most_moved(strands: &Strands, before: &[DVec3], after: &[DVec3]) -> f64 {

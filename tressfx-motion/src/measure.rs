@@ -19,7 +19,7 @@ use crate::truth::{Truth, truth};
 /// Pairs of frames that are timed.
 const PAIRS: u32 = 6;
 /// What a GPU is given to do before that.
-const WARM_UP: Duration = Duration::from_millis(300);
+const WARM_UP: Duration = Duration::from_secs(1);
 
 /// What is measured with, and where rows are kept.
 pub(crate) struct Measure {
