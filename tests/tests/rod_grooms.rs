@@ -157,7 +157,7 @@ fn most_moved(strands: &Strands, before: &[DVec3], after: &[DVec3]) -> f64 {
     strand.map(moved).fold(0.0, f64::max)
 }
 
-/// Soft hair, that is: gel and spray swing for seconds. Where a guess went on with what a round had overshot, strands of each of these grooms swung by 1e-4 to 2e-3
+/// Soft hair, that is: gel and spray swing for seconds. Where a guess went on with what a round had overshot, strands of all of these grooms but the curls swung by 1e-4 to 2e-3
 /// of their length a frame for ever, at 30 or 60 sub-steps a second: a long sub-step is nearly all stiffness, and a round may overshoot by a third there.
 #[test]
 fn hair_comes_to_rest_whatever_its_material_and_sub_step() {

@@ -314,8 +314,8 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 /// that asked for it alone would be turned by what bends all that hangs on it.
 ///
 /// An edge that came back twice in a row, in each of the last two sub-steps, is guessed to stay where it is. A round may go too far; where the guess goes on
-/// the same way, the next round goes back as far, and a strand at rest would swing to and fro without end. Motion that sub-steps can follow turns back once: a
-/// guess that is not on its way, there alone, would be a push. Short sub-steps have other rounds instead, and strands that touch something do too.
+/// the same way, the next round goes back as far, and a strand at rest would swing to and fro without end. Motion that sub-steps can follow turns back once.
+/// Short sub-steps have other rounds instead, and strands that touch something do too.
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
     let swings_back = |edge: usize| {
