@@ -139,10 +139,15 @@ fn longest_turn(found: Found) -> f32 {
     return select(LONGEST_TURN, TOUCHING_TURN, found.touching);
 }
 
-/// Whether an edge that comes back twice in a row is guessed to stay where it is. Short sub-steps have other rounds instead, and strands that touch something
-/// do too.
+/// Whether the sub-step is longer than the shortest one that has no other rounds for its shortness, by more than rounding.
+fn is_long() -> bool {
+    return step.length > 1.01 * SHORT;
+}
+
+/// Whether an edge that comes back twice in a row is guessed to stay where it is. In shorter sub-steps nothing shook, and strands that touch something have other
+/// rounds.
 fn may_stay(found: Found) -> bool {
-    return step.length > 0.99 * SHORT && !found.touching;
+    return is_long() && !found.touching;
 }
 
 /// All rounds of a sub-step after those that are done; gives what the last one has come to. Where contacts are left to `direct_near`, no
@@ -191,7 +196,7 @@ fn finish(strand: Strand, start: Start, round: Round) {
         near = vec2(f32(round.near.first), f32(round.near.last));
     }
     var aimed = round.aimed;
-    if (!calm) { aimed = aim_again(strand); }
+    if (!calm && (strand.has_past || is_long())) { aimed = aim_again(strand); }
     keep_hold(strand, round.place, calm);
     store_strains(strand, true);
     let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);

@@ -126,6 +126,7 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
     var parent_turn = vec3(0.0);
     let speed = speed_of(strand.has_past, 1.0);
     var moved_before = rods[moved_slot(strand, strand.held, 1u)].xyz;
+    var speed_before = speed.x * start.moving + speed.y * moved_before;
     @if(colliders) var near = round.near;
     @if(colliders) var clear = nothing_known();
     @if(colliders) var past_before = squared_past_head(strand, start.place, start.moving);
@@ -166,11 +167,12 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
             rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
             positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
-            // By what the ends of the edge move against each other, and would in another sub-step of this length. A round may go too far, and where the guess goes
-            // on the same way, the next round goes back as far: so the guess stays.
-            let last = here.moved.xyz - moved_before;
-            let swings_back = dot(by, last) < 0.0;
-            let apart = select(speed.x * length * by + speed.y * last, vec3(0.0), may_stay && came_back && swings_back);
+            // By what the vertex would move in another sub-step of this length. A round may go too far, and where the guess goes on the same way, the next
+            // round goes back as far: so the guess stays.
+            let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
+            let swings_back = dot(by, here.moved.xyz - moved_before) < 0.0;
+            let apart = select(speed_here - speed_before, vec3(0.0), may_stay && came_back && swings_back);
+            speed_before = speed_here;
             round.aimed += keep_aim(strand, vertex, length, swings_back, aim(now, next_roll, length, apart));
             moved_before = here.moved.xyz;
         }

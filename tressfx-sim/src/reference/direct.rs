@@ -315,14 +315,14 @@ fn directions(rod: &Rod) -> Vec<DVec3> {
 ///
 /// An edge that came back twice in a row, in each of the last two sub-steps, is guessed to stay where it is. A round may go too far; where the guess goes on
 /// the same way, the next round goes back as far, and a strand at rest would swing to and fro without end. Motion that sub-steps can follow turns back once.
-/// Short sub-steps have other rounds instead, and strands that touch something do too.
+/// Nothing shook in sub-steps of 1/120 s and less, and strands that touch something have other rounds.
 fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     let free = |vertex: usize| rod.positions[vertex] + step.length * rod.velocities[vertex];
     let swings_back = |edge: usize| {
         let turned = |moved: &[DVec3]| moved[edge + 1] - moved[edge];
         turned(&rod.displacements).dot(turned(&rod.last_displacements)) < 0.0
     };
-    let may_stay = step.length > 0.99 * SHORT && !rod.is_touching;
+    let may_stay = step.length > 1.01 * SHORT && !rod.is_touching;
     let aimed = |edge: usize| {
         if may_stay && rod.has_past && rod.came_back[edge] && swings_back(edge) {
             return rod.frames[edge];
