@@ -139,7 +139,7 @@ fn longest_turn(found: Found) -> f32 {
     return select(LONGEST_TURN, TOUCHING_TURN, found.touching);
 }
 
-/// Whether the sub-step is longer than the shortest one that has no other rounds for its shortness, by more than rounding.
+/// Whether the sub-step is longer than `SHORT` by more than rounding.
 fn is_long() -> bool {
     return step.length > 1.01 * SHORT;
 }
