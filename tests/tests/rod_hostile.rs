@@ -2,8 +2,9 @@
 
 use glam::{DQuat, DVec3};
 use tressfx_conformance::rod::G;
+use tressfx_conformance::rod::strand::{self, energy};
 use tressfx_conformance::sim::Random;
-use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, direct};
+use tressfx_sim::reference::direct::{Rod, RodRest, RodStep, TipHold, direct};
 
 const SUB_STEP: f64 = 0.002;
 
@@ -88,5 +89,45 @@ fn joints_that_are_damped_and_flip_over_come_to_rest() {
         let fastest = (0..10).map(|_| speed(&step, &rest, sub_steps, 0.0, &mut random)).fold(0.0, f64::max);
         println!("{divided} times shorter: {fastest:e} m/s");
         assert!(fastest < 0.1, "{divided}: {fastest} m/s");
+    }
+}
+
+/// The most energy that a strand gains within so many sub-steps from its rest on, of a fall by its length.
+fn gained(step: &RodStep, rest: &RodRest, sub_steps: u32) -> f64 {
+    let mut rod = Rod::at_rest(rest, step.root);
+    let start = energy(step, rest, &rod);
+    let mut most = 0.0_f64;
+    for _ in 0..sub_steps {
+        direct(step, rest, &mut rod);
+        most = most.max(energy(step, rest, &rod) - start);
+    }
+    most / (G * rest.lengths.iter().sum::<f64>().powi(2))
+}
+
+/// Where twist is soft, rounds do not come to their end in a strand that bends far: an edge that rolls turns the bend of its neighbours.
+#[test]
+fn rounds_that_do_not_come_to_their_end_give_a_strand_no_energy() {
+    for twist_ratio in [0.1, 0.2, 0.77] {
+        for rate in [60.0, 120.0, 240.0] {
+            for aside in [0.02, 0.1, 0.4] {
+                // Its joints are bent to and fro, in a plane that leans.
+                let side = |i: usize| DVec3::new(0.6, 0.8, 0.0) * aside * (i % 2) as f64;
+                let at = |i: usize| 0.019 * (DVec3::new(0.0, -0.15, 1.0) * i as f64 + side(i));
+                let rest = RodRest::new(&(0..8).map(at).collect::<Vec<_>>(), 0);
+                let most = gained(&RodStep { twist_ratio, ..strand::step(1.0 / rate, 0.05) }, &rest, 2 * rate as u32);
+                assert!(most < 1e-3, "twist ratio {twist_ratio}, 1/{rate} s, {aside} aside: {most}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_folded_strand_between_two_pins_gains_no_energy_in_short_sub_steps() {
+    let at = |i: usize| f64::from(i as u32 % 2) * DVec3::new(-0.032_4, -0.001_4, -0.000_2);
+    let rest = RodRest::new(&(0..8).map(at).collect::<Vec<_>>(), 1);
+    let tip = Some(TipHold { place: rest.positions[7], frame: None });
+    for length in [1e-5, 2e-5, 1e-4, 2.5e-4, 1e-3, 1.0 / 120.0] {
+        let most = gained(&RodStep { tip, drag: [20.0, 10.0], ..strand::step(length, 0.05) }, &rest, 2000);
+        assert!(most < 1e-6, "{length} s: {most}");
     }
 }

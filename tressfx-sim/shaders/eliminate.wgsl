@@ -26,6 +26,9 @@ import package::rod_touch::{edge_between, last_touch};
 
 /// How stiff the spring is that holds a pinned tip, over the mass that hangs on it.
 const HOLD: f32 = 1e4;
+/// In sub-steps shorter than this, s, the spring is no stiffer: what is taken back within a shorter time, be it rounding, throws folded strands
+/// about.
+const AT_ONCE: f32 = 2e-3;
 /// What holds an edge against a rotation about itself is never less than this share of all that holds it.
 const LEAST_TWIST: f32 = 1e-6;
 
@@ -209,7 +212,10 @@ fn past_strain(strand: Strand, vertex: u32, strain: vec3<f32>) -> vec3<f32> {
 /// The stiffness of the spring that holds a pinned tip; 0 where the tip is free.
 fn hold_stiffness(strand: Strand) -> f32 {
     @if(!pinned_tips) { return 0.0; }
-    @if(pinned_tips) { return HOLD * strand.tip_mass; }
+    @if(pinned_tips) {
+        let share = min(step.length / AT_ONCE, 1.0);
+        return HOLD * share * share * strand.tip_mass;
+    }
 }
 
 /// Where a pinned tip is held.

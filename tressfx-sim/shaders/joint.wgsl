@@ -5,6 +5,9 @@ import package::vector::{after, rotate};
 
 /// A strain that changes by more than this within a sub-step has no rate: the joint has flipped over.
 const FLIP: f32 = 1.0;
+/// Twist is held at least so many times as stiffly as the joint is bent, in units of its bending stiffness: the torque of a bent joint turns with
+/// the edges, which couples their rolls with what moves them aside. Where twist is softer than that, rounds go away from their end.
+const HELD_TWIST: f32 = 0.3;
 
 /// A joint in a pose.
 struct Joint {
@@ -65,7 +68,8 @@ struct Spring { bending: f32, twist_ratio: f32, axis: vec3<f32> }
 fn spring_of(joint: Joint, stiffness: Stiffness) -> Spring {
     let stiffer = 0.5 * slope(joint.turn.w);
     let bending = stiffer * stiffer * stiffer * (1.0 + stiffness.lag) * stiffness.bending;
-    return Spring(bending, stiffness.twist_ratio, twist_axis(joint.middle, joint.back));
+    let twist_ratio = max(stiffness.twist_ratio, HELD_TWIST * length(joint.strain.xy));
+    return Spring(bending, twist_ratio, twist_axis(joint.middle, joint.back));
 }
 
 /// The axis that twist is stiff about: halfway from one frame to the other, the shorter way. With that of either of them a bent joint

@@ -1,7 +1,7 @@
 // A sub-step of a strand of rods: what its rounds begin with, how many there are, and what the next sub-step begins with. Of `direct` and of `direct_near`.
 
 import package::counts::Counts;
-import package::eliminate::{Begin, eliminate, hold_place, hold_stiffness};
+import package::eliminate::{AT_ONCE, Begin, eliminate, hold_place, hold_stiffness};
 import package::joint::joint_between;
 import package::rod::{
     BEGIN, FRAME, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, half_turn,
@@ -18,8 +18,10 @@ import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_m
 
 @group(0) @binding(5) var<storage, read_write> counts: Counts;
 
-/// Where an edge turns by more than this in the last round, rad, the strand's past says little about its future.
-const TOO_FAST: f32 = 0.5;
+/// Where an edge turns by more than this in the last round, rad, the rounds have not come to their end: the strand's past says little about its
+/// future, and its velocities would be what is left undone. It keeps the share of them that this is of the turn. What touches something turns
+/// less in a round, and would not slide any more.
+const TOO_FAST: f32 = 0.1;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
 const ANOTHER_ROUND: f32 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as their square.
@@ -37,7 +39,7 @@ const LONGEST_TURN: f32 = 1.5;
 const TOUCHING_TURN: f32 = 0.3;
 
 /// The share of what the spring of a pinned tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
-/// that is pulled taut swings to and fro without end.
+/// that is pulled taut swings to and fro without end; in those shorter than `AT_ONCE` it is less, in proportion.
 const TAKEN_UP: f32 = 0.125;
 
 /// The strand goes to its rest pose, at rest.
@@ -169,6 +171,9 @@ fn rounds(strand: Strand, start: Start, so_far: Round) -> Round {
         let count = round.count + 1u;
         round = substitute(strand, start, begin.is_first_round, longest_turn(found), limit_of(count), may_stay(found));
         round.count = count;
+        @if(contacts) {
+            round.touching = found.touching;
+        }
         @if(colliders && !contacts) {
             if (is_any(round.near)) { break; }
         }
@@ -188,7 +193,11 @@ fn end(strand: Strand, start: Start, round: Round) {
 
 /// Stores the state of the strand that the next sub-step begins with.
 fn finish(strand: Strand, start: Start, round: Round) {
-    var calm = round.longest < TOO_FAST;
+    var is_too_fast = round.longest > TOO_FAST;
+    @if(contacts) {
+        is_too_fast = is_too_fast && !round.touching;
+    }
+    var calm = !is_too_fast;
     var near = vec2(f32(step.vertices), 0.0);
     @if(contacts) {
         let is_new = note_touches(strand, round.near, start.surface);
@@ -196,7 +205,7 @@ fn finish(strand: Strand, start: Start, round: Round) {
         near = vec2(f32(round.near.first), f32(round.near.last));
     }
     var aimed = round.aimed;
-    if (!calm && (strand.has_past || is_long())) { aimed = aim_again(strand); }
+    if (!calm) { aimed = aim_again(strand, select(1.0, TOO_FAST / round.longest, is_too_fast)); }
     keep_hold(strand, round.place, calm);
     store_strains(strand, true);
     let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);
@@ -225,6 +234,7 @@ fn store_strains(strand: Strand, keep: bool) {
 fn keep_hold(strand: Strand, place: vec3<f32>, calm: bool) {
     @if(pinned_tips) {
         let more = hold_stiffness(strand) * (hold_place(strand) - strand.root_now - place);
-        if (calm) { rods[slot(strand, 0u, HOLDING)] += vec4(TAKEN_UP * more, 0.0); }
+        let taken_up = TAKEN_UP * min(step.length / AT_ONCE, 1.0);
+        if (calm) { rods[slot(strand, 0u, HOLDING)] += vec4(taken_up * more, 0.0); }
     }
 }

@@ -39,6 +39,8 @@ struct Round {
     place: vec3<f32>,
     /// By what the tip is moved past the root where the edges take their guesses.
     aimed: vec3<f32>,
+    /// Whether anything was touched in its sweep from the tip.
+    @if(contacts) touching: bool,
     /// The edges that may touch something.
     @if(colliders) near: Range,
 }
@@ -185,12 +187,16 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
     return round;
 }
 
-/// Takes the guesses once more, with velocities of first order, where a strand was too fast for the others.
-fn aim_again(strand: Strand) -> vec3<f32> {
+/// Takes the guesses once more, with velocities of first order, where a strand was too fast for the others. Of what its vertices moved by past
+/// what holds them only the share `kept` counts as velocity.
+fn aim_again(strand: Strand, kept: f32) -> vec3<f32> {
     var aimed = vec3(0.0);
-    var before = rods[moved_slot(strand, strand.held, 0u)].xyz;
+    let held = rods[moved_slot(strand, strand.held, 0u)].xyz;
+    var before = held;
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
-        let moved = rods[moved_slot(strand, vertex, 0u)];
+        var moved = rods[moved_slot(strand, vertex, 0u)];
+        moved = vec4(mix(held, moved.xyz, kept), moved.w);
+        rods[moved_slot(strand, vertex, 0u)] = moved;
         let length = rods[slot(strand, vertex, AIMED)].w;
         let frame = frame_before_aim(strand, vertex, moved.w);
         let guess = aim(frame, moved.w, abs(length), moved.xyz - before);

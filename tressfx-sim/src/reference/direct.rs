@@ -24,8 +24,11 @@ pub use rest::RodRest;
 
 /// An edge that is shorter than this share of its strand has no direction of its own.
 const NO_EDGE: f64 = 1e-12;
-/// Where an edge turns by more than this in the last round of a sub-step, rad, the strand's past says little about its future.
-const TOO_FAST: f64 = 0.5;
+/// Where an edge turns by more than this in the last round of a sub-step, rad, the rounds have not come to their end: the strand's past says
+/// little about its future, and its velocities would be what is left undone. It keeps the share of them that this is of the turn. With a limit
+/// of 0.5 and all of the velocities, 11 of 1,446 random cases without drag gained more than 0.2 % of the energy of a fall; so 2 do. What
+/// touches something turns less in a round, and would not slide any more.
+const TOO_FAST: f64 = 0.1;
 /// There is another round where an edge turns by more than this, rad/s times the length of the sub-step,
 const ANOTHER_ROUND: f64 = 4.0;
 /// and in sub-steps shorter than this, s, by less, as the square of the sub-step: what a round leaves undone is a force that is
@@ -35,6 +38,9 @@ const SHORT: f64 = 1.0 / 120.0;
 /// The share of what the spring of a held tip leaves that the force which the tip has come to takes up in a sub-step. With all of it, a strand
 /// that is pulled taut swings to and fro without end.
 const TAKEN_UP: f64 = 0.125;
+/// In sub-steps shorter than this, s, it is less, in proportion, and the spring is no stiffer: what is taken back within a shorter time, be it
+/// rounding, throws folded strands about.
+const AT_ONCE: f64 = 2e-3;
 /// An edge whose ends move against each other by more than so many times its length is not aimed: the direction that it would get is no
 /// guess at all. With half of the length fast bars go through strands that they push.
 const NO_AIM: f64 = 2.0;
@@ -296,9 +302,10 @@ pub fn direct(step: &RodStep, rest: &RodRest, rod: &mut Rod) -> u32 {
             break;
         }
     }
-    let calm = turned < TOO_FAST && !touches.iter().any(|touch| touch.is_new);
+    let is_too_fast = turned > TOO_FAST && !rod.is_touching;
+    let calm = !is_too_fast && !touches.iter().any(|touch| touch.is_new);
     rod.touches = touches;
-    finish(step, &motion, rod, calm);
+    finish(step, &motion, rod, calm, if is_too_fast { TOO_FAST / turned } else { 1.0 });
     rounds
 }
 
@@ -345,12 +352,14 @@ fn aim(step: &RodStep, rest: &RodRest, rod: &mut Rod) {
     rod.place(rest);
 }
 
-/// The state that the next sub-step begins with.
-fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
+/// The state that the next sub-step begins with. Of what vertices moved by past what holds them only the share `kept` counts as velocity.
+fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool, kept: f64) {
     std::mem::swap(&mut rod.velocities, &mut rod.last_velocities);
     std::mem::swap(&mut rod.displacements, &mut rod.last_displacements);
+    let held = motion.rest.held;
     for (vertex, before) in motion.before.iter().enumerate() {
-        let displacement = rod.positions[vertex] - before;
+        let moved = rod.positions[vertex] - before;
+        let displacement = if vertex > held { rod.displacements[held].lerp(moved, kept) } else { moved };
         rod.displacements[vertex] = displacement;
         rod.velocities[vertex] = match calm {
             true => (rod.positions[vertex] - motion.past[vertex].place) / motion.length,
@@ -363,7 +372,8 @@ fn finish(step: &RodStep, motion: &Motion, rod: &mut Rod, calm: bool) {
         Some(_) if !calm => {}
         Some(hold) => {
             let error = hold.place - rod.positions[motion.before.len() - 1];
-            rod.holding += TAKEN_UP * newton::hold_stiffness(motion.rest) * error;
+            let taken_up = TAKEN_UP * (step.length / AT_ONCE).min(1.0);
+            rod.holding += taken_up * newton::hold_stiffness(step, motion.rest) * error;
         }
     }
     rod.rolls.iter_mut().filter(|roll| roll.abs() > MOST_ROLL).for_each(|roll| *roll = 0.0);

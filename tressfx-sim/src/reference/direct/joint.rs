@@ -4,6 +4,10 @@ use glam::{DMat3, DQuat, DVec3};
 
 /// A strain that changes by more than this within a sub-step has no rate: the joint has flipped over.
 const FLIP: f64 = 1.0;
+/// Twist is held at least so many times as stiffly as the joint is bent, in units of its bending stiffness. The torque of a bent joint turns with
+/// the edges, which couples their rolls with what moves them aside; where twist is softer than that, rounds go away from their end, and
+/// strands gain energy. Of 1,920 cases 4 did without it, none with 0.15 to 0.5, and with 1 again 3.
+const HELD_TWIST: f64 = 0.3;
 
 /// A joint in a pose.
 #[derive(Clone, Copy, Debug)]
@@ -66,7 +70,8 @@ impl Joint {
     /// large ones. Less makes Newton's method overshoot there, and strands gain energy.
     pub(super) fn stiffness(&self, stiffness: &Stiffness) -> DMat3 {
         let axis = self.twist_axis();
-        let twist = (stiffness.twist_ratio - 1.0) * super::outer(axis, axis);
+        let twist_ratio = stiffness.twist_ratio.max(HELD_TWIST * self.strain.truncate().length());
+        let twist = (twist_ratio - 1.0) * super::outer(axis, axis);
         let stiffer = (slope(self.turn.w) / 2.0).powi(3);
         stiffer * (1.0 + stiffness.lag) * stiffness.bending * (DMat3::IDENTITY + twist)
     }

@@ -3,10 +3,10 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::joint::{Joint, Stiffness};
-use super::{Motion, Rod, RodRest, outer};
+use super::{AT_ONCE, Motion, Rod, RodRest, RodStep, outer};
 
 /// How stiff the spring is that holds a tip: its stiffness times the square of the sub-step, over the mass that it holds, see
-/// [`RodRest::tip_mass`].
+/// [`RodRest::tip_mass`]; in sub-steps shorter than [`AT_ONCE`], as stiff a spring as in those.
 const HOLD: f64 = 1e4;
 /// The longest rotation of an edge in a round, rad.
 const LONGEST_TURN: f64 = 1.5;
@@ -75,7 +75,7 @@ fn at_tip(motion: &Motion, rod: &Rod) -> Beyond {
     // The force that the tip has come to is held with, not that of the spring, which changes its sign from round to round.
     let pull = force + rod.holding;
     if let Some(hold) = step.tip {
-        let spring = hold_stiffness(rest);
+        let spring = hold_stiffness(step, rest);
         place += spring * DMat3::IDENTITY;
         force += rod.holding + spring * (hold.place - rod.positions[last + 1]);
         if let Some(frame) = hold.frame {
@@ -90,8 +90,8 @@ fn at_tip(motion: &Motion, rod: &Rod) -> Beyond {
 }
 
 /// The stiffness of the spring that holds a tip, times the square of the sub-step.
-pub(super) fn hold_stiffness(rest: &RodRest) -> f64 {
-    HOLD * rest.tip_mass()
+pub(super) fn hold_stiffness(step: &RodStep, rest: &RodRest) -> f64 {
+    HOLD * (step.length / AT_ONCE).min(1.0).powi(2) * rest.tip_mass()
 }
 
 /// Takes an edge out of the system, and gives the vertex before it and its parent what the edge and all beyond want of them.
