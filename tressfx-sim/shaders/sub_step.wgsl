@@ -114,7 +114,8 @@ fn next_begin(strand: Strand, start: Start, round: Round) -> Begin {
 
 /// Where an edge turns by more than this in a round, rad, there is another one.
 fn limit_of(round: u32) -> f32 {
-    return select(NO_LIMIT, ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), round < step.rounds);
+    let limit = min(ANOTHER_ROUND * step.length * min(step.length / SHORT, 1.0), TOO_FAST);
+    return select(NO_LIMIT, limit, round < step.rounds);
 }
 
 /// Whether the last round may not be the end. Where an edge may touch something, the next sweep says; see `is_end`.

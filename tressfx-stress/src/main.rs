@@ -81,7 +81,9 @@ fn main() -> Result<()> {
     if let Some(seed) = args.case {
         return play(seed, &args.settings());
     }
-    std::fs::create_dir_all(&args.work).with_context(|| args.work.display().to_string())?;
+    for folder in [Some(&args.work), args.docs.as_ref()].into_iter().flatten() {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
     let path = args.work.join("run.json");
     if args.pages {
         let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
