@@ -10,7 +10,7 @@ use tressfx_stress::case::{Case, Part, SolverName};
 use tressfx_stress::energy::Ledger;
 
 /// Seeds that are tried.
-const SEEDS: u64 = 3000;
+const SEEDS: u64 = 2400;
 /// Sub-steps of a case, at most.
 const SUB_STEPS: usize = 300;
 /// Edges shorter than this share of the longest one, but longer than 0, make joints so stiff that what a round leaves undone counts there.
@@ -27,7 +27,7 @@ fn case(seed: u64, sub_step: f64) -> Option<Case> {
     }
     (case.params.air_drag, case.params.internal_damping, case.params.sag_free) = (0.05, 0.0, 0.0);
     // The least there may be, in every second one: soft twist is the hardest.
-    if seed % 2 == 0 {
+    if seed.is_multiple_of(2) {
         case.params.twist_ratio = 0.1;
     }
     (case.clock.sub_step, case.clock.max_frame) = (sub_step, 2.0 * sub_step);
@@ -70,7 +70,7 @@ fn that_gain(sub_step: f64) -> (Vec<(u64, f64)>, usize) {
 
 #[test]
 fn strands_that_are_left_alone_gain_no_energy() {
-    for sub_step in [0.03, 1.0 / 120.0, 0.003, 1e-5] {
+    for sub_step in [0.1, 1.0 / 60.0, 1.0 / 120.0, 0.003, 1e-5] {
         let (wrong, cases) = that_gain(sub_step);
         println!("{sub_step} s: {cases} cases, {wrong:?}");
         assert!(cases > 200 && wrong.is_empty(), "{sub_step} s: {wrong:?}");
