@@ -9,7 +9,7 @@ use crate::map::{BENDING_LENGTHS, Cell, LOCAL_STIFFNESSES, RATES, VERTICES};
 
 const SIZE: (u32, u32) = (1180, 330);
 /// Where the names of the stiffnesses end, and where the squares begin.
-const LEFT: i32 = 96;
+const LEFT: i32 = 128;
 const TOP: i32 = 64;
 const SQUARE: i32 = 24;
 const GAP: i32 = 24;
