@@ -81,11 +81,13 @@ impl<'a> Ledger<'a> {
         f64::from(before + self.strands.rest_lengths[vertex]) / 2.0
     }
 
+    /// What its weight has in these places.
     fn height(&self, guide: usize, places: &[DVec3]) -> f64 {
         let gravity = self.gravity.as_dvec3();
         self.range(guide).zip(places).map(|(i, place)| -self.mass(i) * gravity.dot(*place)).sum()
     }
 
+    /// What its masses have at these velocities.
     fn motion(&self, guide: usize, velocities: &[DVec3]) -> f64 {
         let range = self.range(guide);
         let of_vertices: f64 = range.clone().zip(velocities).map(|(i, v)| self.mass(i) * v.length_squared()).sum();

@@ -19,7 +19,7 @@ const EDGE: f64 = 2e-5;
 /// How far a root may be from where the head has it, of its distance from the centre.
 const ROOT: f64 = 1e-5;
 /// The most energy that `Direct` may gain, of a fall by the length.
-const ENERGY: f64 = 2e-3;
+pub const ENERGY: f64 = 2e-3;
 /// By how much tips may be faster than what is free to fall: the end of a whip is.
 const WHIP: f64 = 3.0;
 
