@@ -11,12 +11,18 @@ use tressfx_core::strands::{StrandOptions, Strands};
 use tressfx_core::view::Pose;
 use tressfx_sim::{Collider, SectionDesc, SimParams, Solver, StepInput, metrics, reference};
 
-use support::gpu;
+use support::{gpu, taken_for};
 
 const DT: f64 = 1.0 / 60.0;
 
 fn rig(strands: &Strands, params: &SimParams, most: usize) -> Option<Rig> {
-    Some(Rig::with_colliders(gpu()?, strands.clone(), params.clone(), Solver::Direct, &[], most))
+    rig_taken_for(true, strands, params, most)
+}
+
+/// On a CPU a thread goes along a strand, on a GPU several go together.
+fn rig_taken_for(is_cpu: bool, strands: &Strands, params: &SimParams, most: usize) -> Option<Rig> {
+    let backend = taken_for(*gpu()?, is_cpu);
+    Some(Rig::with_colliders(backend, strands.clone(), params.clone(), Solver::Direct, &[], most))
 }
 
 fn capsule(a: Vec3, b: Vec3, radius_a: f32, radius_b: f32) -> Capsule {
@@ -39,17 +45,27 @@ fn colliders(strands: &Strands, frame: u32) -> Vec<Collider<'static>> {
 
 #[test]
 fn the_kernel_does_what_its_f64_function_does() {
+    does_what_its_f64_function_does(true);
+}
+
+#[test]
+fn threads_that_go_along_a_strand_together_do_what_the_f64_function_does() {
+    does_what_its_f64_function_does(false);
+}
+
+fn does_what_its_f64_function_does(is_cpu: bool) {
     let groups = [
         ("random, 2", random_strands(65, 2, 0, 3)),
         ("random, 16", random_strands(65, 16, 1, 3)),
-        ("random, 64", random_strands(65, 64, 0, 3)),
         ("long", builtin("long", 200)),
+        ("random, 64", random_strands(65, 64, 0, 3)),
         ("curly", builtin("curly", 200)),
     ];
-    for (name, strands) in groups {
+    // A barrier is dear on a CPU.
+    for (name, strands) in groups.into_iter().take(if is_cpu { 5 } else { 3 }) {
         let params = SimParams::default();
         let motion = Motion { wind: None, ..Motion::turning(&strands) };
-        let Some(mut rig) = rig(&strands, &params, 2) else { return };
+        let Some(mut rig) = rig_taken_for(is_cpu, &strands, &params, 2) else { return };
         let desc = SectionDesc::new(&strands, params).with_solver(Solver::Direct);
         let mut reference = reference::Simulation::new(&[desc]).unwrap();
         let untouched = reference_without_colliders(&strands, &motion);
@@ -93,16 +109,20 @@ fn reference_without_colliders(strands: &Strands, motion: &Motion) -> Vec<glam::
 
 #[test]
 fn both_backends_agree_to_the_bit() {
+    [true, false].into_iter().for_each(both_backends_agree);
+}
+
+fn both_backends_agree(is_cpu: bool) {
     let strands = random_strands(65, 24, 1, 9);
     let Some(gpu) = gpu() else { return };
     let params = SimParams { internal_damping: 1e-3, ..SimParams::default() };
     let made = |backend| Rig::with_colliders(backend, strands.clone(), params.clone(), Solver::Direct, &[], 2);
-    let mut one = made(gpu);
+    let mut one = made(taken_for(*gpu, is_cpu));
     let vulkan = {
         let _alone = tressfx_backend_vulkan::lock_loader();
         VulkanBackend::headless().expect("a Vulkan device")
     };
-    let mut other = made(Box::new(vulkan));
+    let mut other = made(taken_for(vulkan, is_cpu));
     let motion = Motion::wild(&strands);
     for frame in 0..=30 {
         let dt = if frame == 0 { 0.0 } else { DT };

@@ -10,7 +10,7 @@ use tressfx_core::shape::Capsule;
 use tressfx_core::strands::Strands;
 use tressfx_sim::{Collider, HairSim, SectionDesc, SimParams, Solver, StepInput};
 
-use support::gpu;
+use support::{gpu, taken_for};
 
 const DT: f64 = 1.0 / 60.0;
 
@@ -103,4 +103,43 @@ fn sections_move_as_each_of_them_alone() {
     let [again, swapped] = [run(&[&one, &other]).unwrap(), run(&[&other, &one]).unwrap()];
     assert!(both == again, "the order within a list changes nothing");
     assert!(both[0] == swapped[1] && both[1] == swapped[0]);
+}
+
+/// Rods that a group of threads goes along together, of lengths around the numbers of threads, some of them pinned at both ends, beside others that touch
+/// nothing: after some sub-steps they are where one thread a strand takes them, but for rounding. A contact multiplies that in taut strands.
+#[test]
+fn threads_that_go_along_a_strand_together_take_it_where_one_does() {
+    // Of up to 2,048 guides 32 threads take a strand, of more 8.
+    for (guides, vertices) in [(200, 2), (200, 9), (200, 33), (200, 35), (60, 100), (2100, 3), (2100, 10), (2100, 19)] {
+        let mut strands = random_strands(guides, vertices, 0, 11);
+        for strand in strands.rest.chunks_mut(vertices as usize).step_by(3) {
+            strand.last_mut().unwrap().w = 0.0;
+        }
+        let params = SimParams { internal_damping: 1e-3, pull_frequency: 0.5, ..SimParams::default() };
+        let capsule = ball(Vec3::new(0.0, -0.15, 0.0), 0.12);
+        let moved = |is_cpu| -> Option<(Vec<Vec4>, u32)> {
+            let backend = taken_for(*gpu()?, is_cpu);
+            let mut rig = Rig::with_colliders(backend, strands.clone(), params.clone(), Solver::Direct, &[capsule], 1);
+            rig.play(&Motion::wild(&strands), 2.0 * DT, 60);
+            assert_eq!(rig.non_finite(), 0);
+            Some((rig.positions(0), near(&mut rig)))
+        };
+        let Some((alone, near_alone)) = moved(true) else { return };
+        let (together, near_together) = moved(false).unwrap();
+        let apart: Vec<_> = alone.iter().zip(&together).map(|(a, b)| a.truncate().distance(b.truncate())).collect();
+        let largest = |strand: &[f32]| strand.iter().copied().fold(0.0, f32::max);
+        let of_strands: Vec<_> = apart.chunks(vertices as usize).map(largest).collect();
+        let free = of_strands.iter().enumerate().filter(|(index, _)| index % 3 > 0).map(|(_, apart)| *apart);
+        let free = free.fold(0.0, f32::max);
+        // The others are moved by the same kernel.
+        let mut differ: Vec<_> = of_strands.iter().copied().filter(|apart| *apart > 0.0).collect();
+        differ.sort_by(f32::total_cmp);
+        let median = differ[differ.len() / 2];
+        println!(
+            "{guides} strands of {vertices}: {near_alone} near, {} differ, by {median:.1e} m (median), free ones by {free:.1e} m",
+            differ.len()
+        );
+        assert!(near_alone > guides / 40 && near_alone.abs_diff(near_together) <= 1 + guides / 100);
+        assert!(median < 1e-6 && free < 1e-4, "{guides} strands of {vertices}: {median:e} {free:e}");
+    }
 }

@@ -34,21 +34,29 @@ fn listed_start(strand: Strand) -> Start {
     return start;
 }
 
-/// What its rounds have come to.
-fn listed_round(strand: Strand, start: Start, place: u32) -> Round {
+/// What its rounds have come to, but for the sums along the strand.
+fn first_listed(start: Start, place: u32) -> Round {
     var round = nothing_done(start);
     let listed = rods[slot_of(place, 0u, LISTED)];
-    round.count = u32(listed.y);
-    if (round.count == 0u) { return round; }
     let so_far = rods[slot_of(place, 0u, SO_FAR)];
-    round.aimed = so_far.xyz;
+    round.count = u32(listed.y);
+    if (round.count > 0u) {
+        round.near = Range(u32(listed.z), u32(listed.w));
+        round.aimed = so_far.xyz;
+        round.longest = so_far.w;
+    }
+    return round;
+}
+
+/// All of it.
+fn listed_round(strand: Strand, start: Start, place: u32) -> Round {
+    var round = first_listed(start, place);
+    if (round.count == 0u) { return round; }
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
         let length = rest_before(strand, vertex).w;
         round.moving += length * rods[slot(strand, vertex, TURNED)].xyz;
         round.place += length * along(rods[slot(strand, vertex, FRAME)]);
     }
     round.finite = is_finite(round.place) && is_finite(round.moving);
-    round.near = Range(u32(listed.z), u32(listed.w));
-    round.longest = so_far.w;
     return round;
 }

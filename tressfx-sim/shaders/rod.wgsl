@@ -17,6 +17,11 @@ import package::wind::wind_of;
 @group(0) @binding(4) var<storage, read_write> positions: array<vec4<f32>>;
 
 const SLOTS: u32 = 14u;
+/// How many of them lie beside each other in memory. Strands that touch something are read alone, and a GPU reads no less than two.
+@if(colliders)
+const ADJACENT: u32 = 2u;
+@if(!colliders)
+const ADJACENT: u32 = 1u;
 /// What the vertex moved by in each of the last sub-steps, in turns, and by how much its edge rolled about itself, rad: in the last one by
 /// how much it rolls in the guess, and then so far.
 const MOVED: u32 = 0u;
@@ -104,8 +109,8 @@ fn speed_of(second_order: bool, ratio: f32) -> vec2<f32> {
 fn strand_of(guide: u32) -> Strand {
     let tip = rod_rest[2u * (step.vertices - 1u) * step.guides + guide];
     let base = base_of(guide);
-    let marks = unpacked_marks(rods[base + BEGIN * GROUP].w);
-    let lengths = rods[base + LENGTHS * GROUP].xy;
+    let marks = unpacked_marks(rods[slot_of(guide, 0u, BEGIN)].w);
+    let lengths = rods[slot_of(guide, 0u, LENGTHS)].xy;
     let ratios = select(step.length / lengths, vec2(1.0), lengths == vec2(0.0));
     let has_past = step.first_order == 0u && marks.counts;
     let now = speed_of(marks.had_past, ratios.x);
@@ -136,17 +141,22 @@ fn strand_of(guide: u32) -> Strand {
 }
 
 fn slot(strand: Strand, vertex: u32, slot: u32) -> u32 {
-    return strand.base + (vertex * SLOTS + slot) * GROUP;
+    return strand.base + slot_in_group(vertex, slot);
 }
 
 /// Where the slots of a guide are.
 fn base_of(guide: u32) -> u32 {
-    return guide / GROUP * step.vertices * SLOTS * GROUP + guide % GROUP;
+    return guide / GROUP * step.vertices * SLOTS * GROUP + guide % GROUP * ADJACENT;
+}
+
+fn slot_in_group(vertex: u32, slot: u32) -> u32 {
+    let place = vertex * SLOTS + slot;
+    return (place - place % ADJACENT) * GROUP + place % ADJACENT;
 }
 
 /// The same as `slot` where nothing else of the strand is asked for.
 fn slot_of(guide: u32, vertex: u32, slot: u32) -> u32 {
-    return base_of(guide) + (vertex * SLOTS + slot) * GROUP;
+    return base_of(guide) + slot_in_group(vertex, slot);
 }
 
 /// The acceleration by the hair around a vertex; behind all slots, and only where hair meets hair.

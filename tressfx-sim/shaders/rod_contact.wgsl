@@ -28,6 +28,7 @@ const ADVANCES: u32 = 12u;
 const REACHED: f32 = 0.02;
 /// Where the normal has turned by more than what this cosine says since the edge touched, it has got to the other side.
 const SAME_SIDE: f32 = 0.3;
+const LAST_BIT: u32 = 31u;
 /// Further than any capsule.
 const FAR: f32 = 1e30;
 
@@ -59,7 +60,7 @@ struct Edge {
 
 /// What contacts do to an edge: half of a quadratic function of the displacement of its points, by the displacement of the vertex
 /// before it and by the rotation of its arm.
-struct Contacts {
+struct Push {
     place: Symmetric,
     mixed: Symmetric,
     turn: Symmetric,
@@ -67,9 +68,10 @@ struct Contacts {
     torque: vec3<f32>,
     /// The force across the surface alone, which tension knows of.
     pull: vec3<f32>,
-    /// The deepest of them.
-    touch: Touch,
 }
+
+/// That, and the deepest of them.
+struct Contacts { push: Push, touch: Touch }
 
 /// Where an edge is nearest to the axis of a capsule: the shares of both, the direction from the axis to the edge, and the
 /// distance from the surface.
@@ -86,7 +88,7 @@ fn nothing_touched() -> Touch {
 /// to the centre of the groom, and `mass` that of the vertex after the edge. Only `obstacles` are looked at; see `bit_of`.
 fn contacts_of(root: vec3<f32>, edge: Edge, last: Touch, obstacles: u32, mass: f32) -> Contacts {
     let none = scaled_identity(0.0);
-    var contacts = Contacts(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0), nothing_touched());
+    var contacts = Contacts(Push(none, none, none, vec3(0.0), vec3(0.0), vec3(0.0)), nothing_touched());
     for (var i = step.first_capsule; i < step.end_capsule; i++) {
         if ((obstacles & bit_of(i)) == 0u) { continue; }
         let u_past = edge.u_moved - surface_moved(i, edge.u_before);
@@ -181,12 +183,12 @@ fn add(contacts: ptr<function, Contacts>, edge: Edge, way: Way, near: Near, weig
     let stiffness = scaled(scale, sum(scaled(select(1.0, STEEPER, is_deep), across), grip));
     let push = scale * pushed * near.normal;
     let force = push - scale * GRIP * held;
-    (*contacts).place = sum((*contacts).place, stiffness);
-    (*contacts).mixed = sum((*contacts).mixed, scaled(near.s, stiffness));
-    (*contacts).turn = sum((*contacts).turn, scaled(near.s * near.s, stiffness));
-    (*contacts).force += force;
-    (*contacts).torque += near.s * force;
-    (*contacts).pull += push;
+    (*contacts).push.place = sum((*contacts).push.place, stiffness);
+    (*contacts).push.mixed = sum((*contacts).push.mixed, scaled(near.s, stiffness));
+    (*contacts).push.turn = sum((*contacts).push.turn, scaled(near.s * near.s, stiffness));
+    (*contacts).push.force += force;
+    (*contacts).push.torque += near.s * force;
+    (*contacts).push.pull += push;
     if (near.gap < (*contacts).touch.gap) {
         (*contacts).touch = Touch(index, near.normal, held, near.gap, is_deep);
     }
@@ -202,7 +204,7 @@ fn capsule_at(root: vec3<f32>, index: u32) -> GpuCapsule {
 
 /// The bit of a collider in a set of them. Those from the 32nd on share the last.
 fn bit_of(index: u32) -> u32 {
-    return 1u << min(index - step.first_capsule, 31u);
+    return 1u << min(index - step.first_capsule, LAST_BIT);
 }
 
 /// By what a point that moves with a collider has moved in the sub-step; `before` is where it was, relative to the centre of then.

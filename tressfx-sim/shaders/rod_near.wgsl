@@ -5,7 +5,7 @@ import package::capsule::clearance;
 @if(fields)
 import package::field_contact::{SLOPE, is_field, sample_of};
 import package::rod::{Strand, reach_of};
-import package::rod_contact::{FAR, bit_of, capsule_at, colliders, moved_by_itself, moved_with_head, nearest_points};
+import package::rod_contact::{FAR, LAST_BIT, bit_of, capsule_at, colliders, moved_by_itself, moved_with_head, nearest_points};
 import package::step::step;
 import package::vector::rotate_back;
 
@@ -66,41 +66,59 @@ fn near_obstacles(clear: ptr<function, Clear>, surface: f32, past: f32, strand: 
     if (room > 0.0 && room * room > past) { return 0u; }
     let way = (sqrt(past) + surface) / SURE;
     let middle = rotate_back(step.head_rotation, strand.root_now + 0.5 * (u + v));
-    let piece = Piece(u, v, middle, length, way);
+    var nearest = Clear(step.first_capsule, FAR, FAR);
+    var end = step.end_capsule;
     if ((*clear).others > way) {
         // Only the nearest is within reach.
-        let distance = distance_from((*clear).nearest, strand.root_now, piece);
-        (*clear).distance = distance - length;
-        return select(0u, bit_of((*clear).nearest), distance <= way);
+        nearest = Clear((*clear).nearest, FAR, (*clear).others);
+        end = nearest.nearest + 1u;
     }
-    var found = 0u;
-    var nearest = Clear(step.first_capsule, FAR, FAR);
-    for (var i = step.first_capsule; i < step.end_capsule; i++) {
-        let distance = distance_from(i, strand.root_now, piece);
-        if (distance <= way) { found |= bit_of(i); }
+    // Threads of a group that are near to one collider each look at it more closely at once: so no branch in this loop.
+    var close = 0u;
+    for (var i = nearest.nearest; i < end; i++) {
+        let distance = distance_from_middle(i, middle, length);
+        close |= select(0u, bit_of(i), distance <= way);
         nearest.others = min(nearest.others, max(nearest.distance, distance));
-        if (distance < nearest.distance) {
-            nearest.distance = distance;
-            nearest.nearest = i;
-        }
+        nearest.nearest = select(nearest.nearest, i, distance < nearest.distance);
+        nearest.distance = min(nearest.distance, distance);
     }
     *clear = Clear(nearest.nearest, nearest.distance - length, nearest.others - length);
+    return within_reach(close, way, strand.root_now, u, v);
+}
+
+/// How far an edge of this middle, in the space of the head, and length is from a collider, or less: by so much a point of it can move in any direction
+/// and not touch it.
+fn distance_from_middle(index: u32, middle: vec3<f32>, length: f32) -> f32 {
+    @if(fields) {
+        if (is_field(colliders[index].capsule)) {
+            return SLOPE * sample_of(colliders[index].capsule, middle).distance - 0.5 * length;
+        }
+    }
+    return SURE * clearance(colliders[index], middle) - 0.5 * length;
+}
+
+/// Those of the colliders that are close to the middle of an edge which the whole edge can touch.
+fn within_reach(close: u32, way: f32, root: vec3<f32>, u: vec3<f32>, v: vec3<f32>) -> u32 {
+    var found = 0u;
+    var rest = close;
+    while (rest != 0u) {
+        let bit = firstTrailingBit(rest);
+        rest &= rest - 1u;
+        // The last bit is of all that are left.
+        let first = step.first_capsule + bit;
+        let end = select(first + 1u, step.end_capsule, bit == LAST_BIT);
+        for (var i = first; i < end; i++) {
+            if (is_within_reach(i, way, root, u, v)) { found |= bit_of(i); }
+        }
+    }
     return found;
 }
 
-/// An edge: its ends from the root, its middle in the space of the head, and how far anything on it has moved past colliders at most.
-struct Piece { u: vec3<f32>, v: vec3<f32>, middle: vec3<f32>, length: f32, way: f32 }
-
-/// How far an edge is from a collider, or less: by so much a point of it can move in any direction and not touch it. Most are so far that their
-/// distance from its middle is enough.
-fn distance_from(index: u32, root: vec3<f32>, edge: Piece) -> f32 {
+fn is_within_reach(index: u32, way: f32, root: vec3<f32>, u: vec3<f32>, v: vec3<f32>) -> bool {
     @if(fields) {
-        if (is_field(colliders[index].capsule)) {
-            return SLOPE * sample_of(colliders[index].capsule, edge.middle).distance - 0.5 * edge.length;
-        }
+        // Nothing better is known of them than from the middle.
+        if (is_field(colliders[index].capsule)) { return true; }
     }
-    let from_middle = SURE * clearance(colliders[index], edge.middle) - 0.5 * edge.length;
-    if (from_middle > edge.way) { return from_middle; }
-    let gap = nearest_points(capsule_at(root, index), edge.u, edge.v).gap;
-    return min(gap, SURE * gap * colliders[index].motion.clear_share);
+    let gap = nearest_points(capsule_at(root, index), u, v).gap;
+    return min(gap, SURE * gap * colliders[index].motion.clear_share) <= way;
 }

@@ -42,27 +42,41 @@ fn edge_between(strand: Strand, u: vec3<f32>, v: vec3<f32>, u_moved: vec3<f32>, 
 /// What a sweep finds along a strand: whether an edge may touch something, touches it, and is deep inside.
 struct Found { near: bool, touching: bool, deep: bool }
 
-/// Notes what the edges that may touch anything touch, for the next sub-step, and says whether any of it is new.
+/// The end of an edge, from the root, and by what it has moved.
+@if(contacts)
+struct End { at: vec3<f32>, moved: vec3<f32> }
+
+@if(contacts)
+fn end_at(strand: Strand, vertex: u32) -> End {
+    let at = positions[vertex * step.strands + strand.guide].xyz - strand.root_now;
+    return End(at, rods[moved_slot(strand, vertex, 0u)].xyz);
+}
+
+/// Notes what an edge between these ends touches, for the next sub-step, and says whether it is new.
+@if(contacts)
+fn note_touch(strand: Strand, vertex: u32, u: End, v: End, obstacles: u32) -> bool {
+    let last = last_touch(strand, vertex);
+    let edge = edge_between(strand, u.at, v.at, u.moved, v.moved);
+    let touch = contacts_of(strand.root_now, edge, last, obstacles, 1.0).touch;
+    rods[slot(strand, vertex, TOUCH)] = vec4(touch.stretch, packed_direction(touch.normal));
+    rods[slot(strand, vertex, STRAIN)].w = f32(touch.obstacle);
+    return touch.obstacle > 0u && touch.obstacle != last.obstacle;
+}
+
+/// The same of all edges that may touch anything.
 @if(contacts)
 fn note_touches(strand: Strand, range: Range, surface: f32) -> bool {
     var is_new = false;
     var clear = nothing_known();
     var past_before = 0.0;
     for (var vertex = range.first; vertex <= range.last; vertex++) {
-        let u = positions[(vertex - 1u) * step.strands + strand.guide].xyz - strand.root_now;
-        let v = positions[vertex * step.strands + strand.guide].xyz - strand.root_now;
-        let u_moved = rods[moved_slot(strand, vertex - 1u, 0u)].xyz;
-        let v_moved = rods[moved_slot(strand, vertex, 0u)].xyz;
-        let last = last_touch(strand, vertex);
-        if (vertex == range.first) { past_before = squared_past_head(strand, u, u_moved); }
-        let past = squared_past_head(strand, v, v_moved);
+        let u = end_at(strand, vertex - 1u);
+        let v = end_at(strand, vertex);
+        if (vertex == range.first) { past_before = squared_past_head(strand, u.at, u.moved); }
+        let past = squared_past_head(strand, v.at, v.moved);
         let length = rest_before(strand, vertex).w;
-        let obstacles = near_obstacles(&clear, surface, max(past_before, past), strand, u, v, length);
-        let edge = edge_between(strand, u, v, u_moved, v_moved);
-        let touch = contacts_of(strand.root_now, edge, last, obstacles, 1.0).touch;
-        is_new = is_new || (touch.obstacle > 0u && touch.obstacle != last.obstacle);
-        rods[slot(strand, vertex, TOUCH)] = vec4(touch.stretch, packed_direction(touch.normal));
-        rods[slot(strand, vertex, STRAIN)].w = f32(touch.obstacle);
+        let obstacles = near_obstacles(&clear, surface, max(past_before, past), strand, u.at, v.at, length);
+        is_new = note_touch(strand, vertex, u, v, obstacles) || is_new;
         past_before = past;
     }
     return is_new;

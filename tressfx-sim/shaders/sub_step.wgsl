@@ -1,12 +1,13 @@
 // A sub-step of a strand of rods: what its rounds begin with, how many there are, and what the next sub-step begins with. Of `direct` and of `direct_near`.
 
 import package::counts::Counts;
-import package::eliminate::{AT_ONCE, Begin, eliminate, hold_place, hold_stiffness};
+import package::eliminate::{Begin, eliminate};
 import package::joint::joint_between;
 import package::rod::{
     BEGIN, FRAME, HOLDING, LAST_STRAIN, LENGTHS, MOVED, MOVES, Marks, STRAIN, Strand, along, frame_at_rest, half_turn,
     moved_slot, packed_marks, positions, rest, rest_before, rods, slot,
 };
+import package::rod_near::{Range, no_edge};
 @if(colliders)
 import package::rod_near::{all_edges, is_any, surface_way};
 import package::rod_touch::Found;
@@ -15,6 +16,7 @@ import package::rod_touch::note_touches;
 import package::root::shape_of;
 import package::step::step;
 import package::substitute::{Aimed, NO_LIMIT, Round, Start, aim_again, inverse_mass, keep_aim, substitute};
+import package::take_out::{AT_ONCE, hold_place, hold_stiffness};
 
 @group(0) @binding(5) var<storage, read_write> counts: Counts;
 
@@ -133,8 +135,18 @@ fn may_go_on(strand: Strand, round: Round) -> bool {
 /// Whether the last round was the end where an edge may touch something, by what the sweep behind it has found.
 @if(contacts)
 fn is_end(round: Round, found: Found) -> bool {
-    let is_calm = round.count > 0u && round.longest <= limit_of(round.count);
-    return is_calm && !(found.touching && (round.count < TOUCHING_ROUNDS || found.deep));
+    return is_calm(round) && !(found.touching && (round.count < TOUCHING_ROUNDS || found.deep));
+}
+
+@if(contacts)
+fn is_calm(round: Round) -> bool {
+    return round.count > 0u && round.longest <= limit_of(round.count);
+}
+
+/// Whether the last round is the end unless the sweep behind it finds something that it did not.
+@if(contacts)
+fn may_be_end(round: Round) -> bool {
+    return is_calm(round) && !(round.touching && round.count < TOUCHING_ROUNDS);
 }
 
 /// No edge turns by more than this in the round behind a sweep that has found this.
@@ -192,42 +204,56 @@ fn end(strand: Strand, start: Start, round: Round) {
     }
 }
 
+/// Whether the last round turned an edge so far that it is not the end.
+fn is_too_fast(round: Round) -> bool {
+    @if(!contacts) { return round.longest > TOO_FAST; }
+    @if(contacts) { return round.longest > TOO_FAST && !round.touching; }
+}
+
+/// The share of its velocities past the root that a strand keeps.
+fn kept_of(round: Round) -> f32 {
+    return select(1.0, TOO_FAST / round.longest, is_too_fast(round));
+}
+
 /// Stores the state of the strand that the next sub-step begins with.
 fn finish(strand: Strand, start: Start, round: Round) {
-    var is_too_fast = round.longest > TOO_FAST;
+    var calm = !is_too_fast(round);
+    var near = no_edge();
     @if(contacts) {
-        is_too_fast = is_too_fast && !round.touching;
-    }
-    var calm = !is_too_fast;
-    var near = vec2(f32(step.vertices), 0.0);
-    @if(contacts) {
-        let is_new = note_touches(strand, round.near, start.surface);
-        calm = calm && !is_new;
-        near = vec2(f32(round.near.first), f32(round.near.last));
+        near = round.near;
+        calm = !note_touches(strand, near, start.surface) && calm;
     }
     var aimed = round.aimed;
-    if (!calm) { aimed = aim_again(strand, select(1.0, TOO_FAST / round.longest, is_too_fast)); }
-    keep_hold(strand, round.place, calm);
+    if (!calm) { aimed = aim_again(strand, kept_of(round)); }
     store_strains(strand, true);
+    keep_begin(strand, round, near, calm, aimed);
+}
+
+/// Stores what the slots of the root are for.
+fn keep_begin(strand: Strand, round: Round, near: Range, calm: bool, aimed: vec3<f32>) {
+    keep_hold(strand, round.place, calm);
     let marks = Marks(strand.turn, calm, calm && strand.has_past, strand.had_past);
     let last_length = rods[slot(strand, 0u, LENGTHS)].x;
     rods[slot(strand, 0u, BEGIN)] = vec4(aimed, packed_marks(marks));
-    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, last_length, near);
+    rods[slot(strand, 0u, LENGTHS)] = vec4(step.length, last_length, f32(near.first), f32(near.last));
 }
 
 /// Stores the strains of all joints; the ones before them are kept, or are the same.
 fn store_strains(strand: Strand, keep: bool) {
     @if(internal_damping) {
-        var parent = strand.root.rotation;
-        for (var vertex = 1u; vertex < step.vertices; vertex++) {
-            let frame = rods[slot(strand, vertex, FRAME)];
-            let last = rods[slot(strand, vertex, STRAIN)];
-            let strain = joint_between(parent, half_turn(rest_before(strand, vertex)), frame).strain;
-            rods[slot(strand, vertex, LAST_STRAIN)] = vec4(select(strain, last.xyz, keep), 0.0);
-            rods[slot(strand, vertex, STRAIN)] = vec4(strain, last.w);
-            parent = frame;
-        }
+        for (var vertex = 1u; vertex < step.vertices; vertex++) { store_strain(strand, vertex, keep); }
     }
+}
+
+@if(internal_damping)
+fn store_strain(strand: Strand, vertex: u32, keep: bool) {
+    var parent = strand.root.rotation;
+    if (vertex > 1u) { parent = rods[slot(strand, vertex - 1u, FRAME)]; }
+    let frame = rods[slot(strand, vertex, FRAME)];
+    let last = rods[slot(strand, vertex, STRAIN)];
+    let strain = joint_between(parent, half_turn(rest_before(strand, vertex)), frame).strain;
+    rods[slot(strand, vertex, LAST_STRAIN)] = vec4(select(strain, last.xyz, keep), 0.0);
+    rods[slot(strand, vertex, STRAIN)] = vec4(strain, last.w);
 }
 
 /// The force that a pinned tip has come to takes up some of what the spring leaves; `place` is from the root. Where the rounds have not come to

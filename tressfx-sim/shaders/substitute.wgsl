@@ -120,12 +120,59 @@ fn needs_frames(limit: f32) -> bool {
     @if(!colliders && !internal_damping) { return limit < NO_LIMIT; }
 }
 
+/// What a sweep to the tip carries from edge to edge: by what the vertex before the next edge is moved, the rotation of its parent, and the longest so far, rad.
+struct Carried { shift: vec3<f32>, turn: vec3<f32>, longest: f32 }
+
+/// Finds the rotation of an edge of this direction; none is longer than `most`, rad.
+fn turn_next(carried: ptr<function, Carried>, strand: Strand, packed: Packed, length: f32, direction: vec3<f32>, most: f32) {
+    let left = left_of(packed);
+    let parent_turn = (*carried).turn;
+    let scaled = (*carried).shift / scale_of(strand, length);
+    var turn = left.free + parent_turn - left.behind * parent_turn - left.by_place * scaled;
+    let size = sqrt(dot(turn, turn));
+    turn *= min(1.0, most / max(size, most));
+    (*carried).longest = max((*carried).longest, min(size, most));
+    (*carried).shift += length * cross(turn, direction);
+    (*carried).turn = turn;
+}
+
+/// An edge that is turned: its frame, what its direction has changed by in this sub-step, and its roll so far.
+struct Turned { now: vec4<f32>, by: vec3<f32>, roll: f32 }
+
+fn turned(here: Hung, turn: vec3<f32>) -> Turned {
+    let direction = along(here.now);
+    let rotation = rotation_by(turn);
+    let by = here.by.xyz + turned_by(rotation, direction);
+    return Turned(normalize(after(rotation, here.now)), by, here.moved.w + dot(turn, direction));
+}
+
+/// Keeps it for the next round.
+fn keep_turned(strand: Strand, vertex: u32, here: Hung, turned: Turned) {
+    rods[slot(strand, vertex, FRAME)] = turned.now;
+    rods[slot(strand, vertex, TURNED)] = vec4(turned.by, here.by.w);
+    rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, turned.roll);
+}
+
+/// Keeps what the next sub-step begins with, should no other round follow: where the vertex is from the root and what it has moved by, and the guess, by `apart`
+/// between the ends of the edge. Where edges `may_stay`, one that comes back twice in a row is guessed to stay where it is. Gives by what the guess moves
+/// the end of the edge.
+fn keep_place(strand: Strand, vertex: u32, here: Hung, turned: Turned, place: vec3<f32>, moving: vec3<f32>, apart: vec3<f32>, swings_back: bool,
+              may_stay: bool) -> vec3<f32> {
+    let roll = select(turned.roll, 0.0, abs(turned.roll) > MOST_ROLL);
+    rods[moved_slot(strand, vertex, 0u)] = vec4(moving, roll);
+    positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + place, inverse_mass(strand, vertex));
+    // A round may go too far, and where the guess goes on the same way, the next round goes back as far: so the guess stays.
+    let came_back = here.by.w < 0.0;
+    let goes_on = select(apart, vec3(0.0), may_stay && came_back && swings_back);
+    let length = abs(here.by.w);
+    return keep_aim(strand, vertex, length, swings_back, aim(turned.now, roll, length, goes_on));
+}
+
 /// No edge turns by more than `most`, rad. An edge that turns by more than `limit` makes another round certain; then what the round comes to is
-/// not kept, but for the frames and rolls. Where edges `may_stay`, one that comes back twice in a row is guessed to stay where it is.
+/// not kept, but for the frames and rolls. For `may_stay` see `keep_place`.
 fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, limit: f32, may_stay: bool) -> Round {
     var round = nothing_done(start);
-    var shift = vec3(0.0);
-    var parent_turn = vec3(0.0);
+    var carried: Carried;
     let speed = speed_of(strand.has_past, 1.0);
     var moved_before = rods[moved_slot(strand, strand.held, 1u)].xyz;
     var speed_before = speed.x * start.moving + speed.y * moved_before;
@@ -137,27 +184,12 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
         let here = next;
         next = hung(strand, min(vertex + 1u, strand.edges), is_first_round);
         let length = abs(here.by.w);
-        let came_back = here.by.w < 0.0;
-        let left = left_of(here.left);
-        let scaled = shift / scale_of(strand, length);
-        var turn = left.free + parent_turn - left.behind * parent_turn - left.by_place * scaled;
-        let size = sqrt(dot(turn, turn));
-        turn *= min(1.0, most / max(size, most));
-        round.longest = max(round.longest, min(size, most));
-        let direction = along(here.now);
-        let roll = here.moved.w + dot(turn, direction);
-        let rotation = rotation_by(turn);
-        let now = normalize(after(rotation, here.now));
-        let by = here.by.xyz + turned_by(rotation, direction);
+        turn_next(&carried, strand, here.left, length, along(here.now), most);
+        let turned = turned(here, carried.turn);
         @if(colliders) let place_before = round.place;
-        shift += length * cross(turn, direction);
-        round.moving += length * by;
-        round.place += length * along(now);
-        if (needs_frames(limit)) {
-            rods[slot(strand, vertex, FRAME)] = now;
-            rods[slot(strand, vertex, TURNED)] = vec4(by, here.by.w);
-            rods[moved_slot(strand, vertex, 1u)] = vec4(here.moved.xyz, roll);
-        }
+        round.moving += length * turned.by;
+        round.place += length * along(turned.now);
+        if (needs_frames(limit)) { keep_turned(strand, vertex, here, turned); }
         @if(colliders) {
             let past = squared_past_head(strand, round.place, round.moving);
             let more = max(past_before, past);
@@ -165,24 +197,20 @@ fn substitute(strand: Strand, start: Start, is_first_round: bool, most: f32, lim
             if (obstacles != 0u) { near = Range(min(near.first, vertex), vertex); }
             past_before = past;
         }
-        if (round.longest <= limit) {
-            let next_roll = select(roll, 0.0, abs(roll) > MOST_ROLL);
-            rods[moved_slot(strand, vertex, 0u)] = vec4(round.moving, next_roll);
-            positions[vertex * step.strands + strand.guide] = vec4(strand.root_now + round.place, inverse_mass(strand, vertex));
-            // By what the vertex would move in another sub-step of this length. A round may go too far, and where the guess goes on the same way, the next
-            // round goes back as far: so the guess stays.
+        if (carried.longest <= limit) {
+            // By what the vertex would move in another sub-step of this length.
             let speed_here = speed.x * round.moving + speed.y * here.moved.xyz;
-            let swings_back = dot(by, here.moved.xyz - moved_before) < 0.0;
-            let apart = select(speed_here - speed_before, vec3(0.0), may_stay && came_back && swings_back);
+            let swings_back = dot(turned.by, here.moved.xyz - moved_before) < 0.0;
+            let apart = speed_here - speed_before;
             speed_before = speed_here;
-            round.aimed += keep_aim(strand, vertex, length, swings_back, aim(now, next_roll, length, apart));
+            round.aimed += keep_place(strand, vertex, here, turned, round.place, round.moving, apart, swings_back, may_stay);
             moved_before = here.moved.xyz;
         }
-        parent_turn = turn;
     }
     @if(colliders) {
         round.near = near;
     }
+    round.longest = carried.longest;
     round.finite = is_finite(round.place) && is_finite(round.moving);
     return round;
 }
@@ -194,16 +222,21 @@ fn aim_again(strand: Strand, kept: f32) -> vec3<f32> {
     let held = rods[moved_slot(strand, strand.held, 0u)].xyz;
     var before = held;
     for (var vertex = strand.held + 1u; vertex <= strand.edges; vertex++) {
-        var moved = rods[moved_slot(strand, vertex, 0u)];
-        moved = vec4(mix(held, moved.xyz, kept), moved.w);
-        rods[moved_slot(strand, vertex, 0u)] = moved;
-        let length = rods[slot(strand, vertex, AIMED)].w;
-        let frame = frame_before_aim(strand, vertex, moved.w);
-        let guess = aim(frame, moved.w, abs(length), moved.xyz - before);
-        aimed += keep_aim(strand, vertex, abs(length), length < 0.0, guess);
+        let moved = rods[moved_slot(strand, vertex, 0u)];
+        aimed += aim_edge_again(strand, vertex, moved, before, held, kept);
         before = moved.xyz;
     }
     return aimed;
+}
+
+/// The same of an edge whose ends moved by so much.
+fn aim_edge_again(strand: Strand, vertex: u32, moved: vec4<f32>, moved_before: vec3<f32>, held: vec3<f32>, kept: f32) -> vec3<f32> {
+    let slower = mix(held, moved.xyz, kept);
+    rods[moved_slot(strand, vertex, 0u)] = vec4(slower, moved.w);
+    let length = rods[slot(strand, vertex, AIMED)].w;
+    let frame = frame_before_aim(strand, vertex, moved.w);
+    let guess = aim(frame, moved.w, abs(length), slower - mix(held, moved_before, kept));
+    return keep_aim(strand, vertex, abs(length), length < 0.0, guess);
 }
 
 /// The frame that a guess was made from, with this roll.

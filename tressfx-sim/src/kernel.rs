@@ -46,6 +46,7 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("contact", include_str!("../shaders/contact.wgsl")),
     ("counts", include_str!("../shaders/counts.wgsl")),
     ("eliminate", include_str!("../shaders/eliminate.wgsl")),
+    ("eliminate_together", include_str!("../shaders/eliminate_together.wgsl")),
     ("field", include_str!("../shaders/field.wgsl")),
     ("field_contact", include_str!("../shaders/field_contact.wgsl")),
     ("field_mesh", include_str!("../shaders/field_mesh.wgsl")),
@@ -66,9 +67,14 @@ pub(crate) const LIBRARY: &[Module] = &[
     ("root_frame", include_str!("../shaders/root_frame.wgsl")),
     ("step", include_str!("../shaders/step.wgsl")),
     ("sub_step", include_str!("../shaders/sub_step.wgsl")),
+    ("sub_step_together", include_str!("../shaders/sub_step_together.wgsl")),
     ("substitute", include_str!("../shaders/substitute.wgsl")),
+    ("substitute_together", include_str!("../shaders/substitute_together.wgsl")),
     ("surface", include_str!("../shaders/surface.wgsl")),
     ("symmetric", include_str!("../shaders/symmetric.wgsl")),
+    ("take_out", include_str!("../shaders/take_out.wgsl")),
+    ("terms", include_str!("../shaders/terms.wgsl")),
+    ("together", include_str!("../shaders/together.wgsl")),
     ("vector", include_str!("../shaders/vector.wgsl")),
     ("volume", include_str!("../shaders/volume.wgsl")),
     ("volume_vertex", include_str!("../shaders/volume_vertex.wgsl")),
@@ -176,7 +182,10 @@ impl PassMaker<'_> {
         resources: &[(&str, Binding)],
     ) -> Result<Pass> {
         let buffers = self.buffers;
-        let specialization = Specialization::new().feature("push", pushes).feature("rods", buffers.rods.is_some());
+        let specialization = Specialization::new()
+            .feature("colliders", self.shared.colliders.is_some())
+            .feature("push", pushes)
+            .feature("rods", buffers.rods.is_some());
         let common = [("volume", volume.buffers.volume.into()), ("positions", buffers.strands.positions.into())];
         let resources = [&common[..], resources].concat();
         let grid = Grid::for_threads(buffers.strands.shape.guide_vertices(), GROUP);

@@ -24,7 +24,7 @@ const RODS: &str = "[sim]\ninternal_damping = 0.001\npull_frequency = 1.0\n[volu
 const COPIES: &str = "[material]\ncopies = 3\n";
 
 /// What is typed after `tressfx shaders`, so that each feature is on once and off once, and each constant small and large.
-const VARIANTS: [&[&str]; 28] = [
+const VARIANTS: [&[&str]; 29] = [
     &["builtin:long:40:8"],
     &["builtin:long:40:8", "--solver", "tressfx"],
     &["builtin:fur:40:3", "--solver", "tressfx", "--follow", "2", "--oit-k", "1", "--params", "bare.toml", "--fields"],
@@ -39,6 +39,7 @@ const VARIANTS: [&[&str]; 28] = [
     &["--oit", "shortcut", "--oit-ordered", "--fill", "raster", "--params", "copies.toml"],
     &["pinned.tfx"],
     &["builtin:long:40:8", "--params", "rods.toml", "--fields"],
+    &["builtin:long:40:8", "--params", "rods.toml", "--fields", "--for-cpu"],
     &["--oit-cap", "8", "--hair-output", "--own-colors"],
     &["--oit", "shortcut", "--hair-output", "--params", "copies.toml"],
     &["--oit", "tiles"],
@@ -164,6 +165,7 @@ fn every_kernel_is_written_in_every_language_with_its_bindings() {
         "shadows",
         "spline",
         "tangents",
+        "together",
         "unshaded",
         "volume",
         "weighted",

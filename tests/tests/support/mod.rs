@@ -6,6 +6,7 @@ pub(crate) mod passes;
 
 use tressfx_backend_vulkan::VulkanBackend;
 use tressfx_backend_wgpu::WgpuBackend;
+use tressfx_conformance::faulty::Faulty;
 use tressfx_conformance::render::{Screen, Setup};
 use tressfx_conformance::sim::Rig;
 use tressfx_core::backend::Run;
@@ -28,6 +29,13 @@ pub(crate) fn gpu() -> Option<Box<WgpuBackend>> {
         }
         Err(error) => panic!("{error}"),
     }
+}
+
+/// The same backend, taken for a CPU or for a GPU, whatever it is: kernels may differ.
+pub(crate) fn taken_for<B: Run + 'static>(backend: B, is_cpu: bool) -> Box<dyn Run> {
+    let mut caps = backend.caps().clone();
+    caps.is_cpu = is_cpu;
+    Box::new(Faulty::claiming(backend, caps))
 }
 
 /// A backend of each kind, or none where there is no [`gpu`].
