@@ -3,6 +3,7 @@
 use tressfx_core::Result;
 use tressfx_core::pass::Grid;
 use tressfx_core::shader::ShaderSource;
+use tressfx_core::strand_buffers::StrandShape;
 
 use super::direct::{features, resources};
 use super::{LIBRARY, Pass, PassMaker};
@@ -20,17 +21,17 @@ const LANES: u32 = 32;
 /// would wait for each other: measured on an H200, 512 are as fast, 2,112 slower by half.
 const MOST_GROUPS: u32 = 1024;
 const MOST_GROUPS_TOGETHER: u32 = 4096;
-/// A driver on a CPU gives a thread only so many turns of all its loops together: a thread has one strand there. The most groups of WebGPU.
+/// On a CPU no thread takes a second strand, see [`fits`]. The most groups of WebGPU.
 const MOST_GROUPS_ON_CPU: u32 = 65_535;
 
 /// `None` for a section with another solver, and where there are no colliders.
 pub(crate) fn direct_near(maker: &mut PassMaker, params: &SimParams) -> Result<Option<Pass>> {
-    let Some(rods) = maker.buffers.rods.filter(|_| maker.shared.colliders.is_some()) else { return Ok(None) };
+    let (Some(rods), Some(colliders)) = (maker.buffers.rods, maker.shared.colliders) else { return Ok(None) };
     let is_cpu = maker.backend.caps().is_cpu;
-    let guides = maker.buffers.strands.shape.guides;
-    let threads = threads_of_strand(guides, is_cpu);
+    let StrandShape { guides, vertices, .. } = maker.buffers.strands.shape;
+    let threads = if is_cpu { threads_on_cpu(vertices, colliders.most) } else { threads_on_gpu(guides) };
     let most = match threads {
-        1 if is_cpu => MOST_GROUPS_ON_CPU,
+        _ if is_cpu => MOST_GROUPS_ON_CPU,
         1 => MOST_GROUPS,
         _ => MOST_GROUPS_TOGETHER,
     };
@@ -42,12 +43,33 @@ pub(crate) fn direct_near(maker: &mut PassMaker, params: &SimParams) -> Result<O
 
 /// How many threads go along a strand together. The more, the sooner a strand is done, as what they do in turn takes less of the time; and the more threads wait
 /// meanwhile, which counts where as many strands are near something as a GPU has threads at once. Measured on an H200, where a fifth of the strands are near.
-fn threads_of_strand(guides: u32, is_cpu: bool) -> u32 {
+fn threads_on_gpu(guides: u32) -> u32 {
     match guides {
-        // There a barrier is dear.
-        _ if is_cpu => 1,
         ..=2048 => 32,
         ..=32_768 => 8,
         _ => 1,
+    }
+}
+
+/// On a CPU a barrier is dear, so a thread goes along a strand alone if it can.
+fn threads_on_cpu(vertices: u32, most_colliders: usize) -> u32 {
+    if fits(vertices, most_colliders) { 1 } else { 32 }
+}
+
+/// Whether a thread alone has turns enough. Mesa's driver ends every loop of a thread once all of its loops together have gone round 65,535 times. In each of 17 sweeps to
+/// the root, and 16 back, each edge asks for all colliders, and for the contacts with those that are near.
+fn fits(vertices: u32, most_colliders: usize) -> bool {
+    let turns_of_edge = 32 + 3 * most_colliders as u64;
+    17 * turns_of_edge * u64::from(vertices) < 65_535
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{fits, threads_on_cpu};
+
+    #[test]
+    fn long_strands_among_many_colliders_have_several_threads_on_a_cpu() {
+        assert!(fits(32, 6) && fits(64, 8) && !fits(128, 8) && !fits(64, 40));
+        assert_eq!((threads_on_cpu(32, 6), threads_on_cpu(256, 1)), (1, 32));
     }
 }
