@@ -18,9 +18,10 @@ fn ball(center: Vec3, radius: f32) -> Capsule {
     Capsule { a: center, b: center, radius_a: radius, radius_b: radius }
 }
 
+/// With room for 40 colliders where there are any: it decides which kernel a CPU takes.
 fn rig(strands: &Strands, capsules: &[Capsule]) -> Option<Rig> {
-    let params = SimParams::default();
-    Some(Rig::with_colliders(gpu()?, strands.clone(), params, Solver::Direct, capsules, capsules.len()))
+    let (params, most) = (SimParams::default(), if capsules.is_empty() { 0 } else { 40 });
+    Some(Rig::with_colliders(gpu()?, strands.clone(), params, Solver::Direct, capsules, most))
 }
 
 /// Strands near a collider in the last sub-step.
@@ -140,6 +141,6 @@ fn threads_that_go_along_a_strand_together_take_it_where_one_does() {
             differ.len()
         );
         assert!(near_alone > guides / 40 && near_alone.abs_diff(near_together) <= 1 + guides / 100);
-        assert!(median < 1e-6 && free < 1e-4, "{guides} strands of {vertices}: {median:e} {free:e}");
+        assert!(median < 1e-6 && free < 1e-3, "{guides} strands of {vertices}: {median:e} {free:e}");
     }
 }

@@ -9,6 +9,9 @@ import package::step::step;
 import package::symmetric::{Symmetric, outer, scaled_identity, sum};
 import package::vector::direction_or;
 
+/// What holds an edge against rolling about itself is never less than this share of the torque of its joint.
+const COUPLED: f32 = 0.1;
+
 /// What it is.
 struct Terms {
     /// The direction of the edge, and that of its parent.
@@ -61,25 +64,27 @@ fn inertia(strand: Strand, vertex: u32, mass: f32, pulled: Pulled, place: vec3<f
 fn terms_of(strand: Strand, vertex: u32, row: Row, axis: vec3<f32>, parent: vec4<f32>, direction: vec3<f32>, length_before: f32, after: Pulled,
             before: Pulled, at: vec3<f32>) -> Terms {
     var terms: Terms;
-    let length = row.rest.w;
+    let size = row.rest.w;
     terms.axis = axis;
-    terms.length = length;
+    terms.length = size;
     terms.direction = direction;
-    let correction = strand.mass_correction * length;
-    terms.inertial = correction * cross(length * axis, after.free - before.free);
+    let correction = strand.mass_correction * size;
+    terms.inertial = correction * cross(size * axis, after.free - before.free);
 
     let joined = select(0.0, length_before, vertex > strand.held + 1u);
-    let span = max(0.5 * (joined + length), strand.shortest_span);
+    let span = max(0.5 * (joined + size), strand.shortest_span);
     let joint = joint_between(parent, half_turn(row.rest), row.now);
     let bending = strand.bending / span * strand.length * strand.length;
     let past = past_strain(strand, vertex, joint.strain);
     let stiffness = Stiffness(bending, step.twist_ratio, lag_of(joint, step.internal_damping / strand.length, past));
     terms.own = torque_of(joint, stiffness, past);
     terms.spring = spring_of(joint, stiffness);
-    // A joint that is bent less than it wants holds its edges against rolling about themselves, which turns its bend out of the plane that it wants.
-    terms.against_roll = 0.5 * max(dot(terms.own, cross(direction, axis)), 0.0);
+    // The torque of a joint turns with its edges. One that is bent less than it wants holds them against rolling about themselves, which turns its bend out of
+    // the plane that it wants; and any couples their rolls with what moves them aside.
+    let against_roll = 0.5 * dot(terms.own, cross(direction, axis));
+    terms.against_roll = max(against_roll, COUPLED * length(terms.own));
 
-    let mass = 0.5 * (length_before + length);
+    let mass = 0.5 * (length_before + size);
     let vertex_axis = direction_or(axis + direction, axis);
     terms.before = inertia(strand, vertex - 1u, mass, before, at, vertex_axis);
     return terms;

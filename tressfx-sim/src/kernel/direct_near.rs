@@ -46,7 +46,7 @@ pub(crate) fn direct_near(maker: &mut PassMaker, params: &SimParams) -> Result<O
 fn threads_on_gpu(guides: u32) -> u32 {
     match guides {
         ..=2048 => 32,
-        ..=32_768 => 8,
+        2049..=32_768 => 8,
         _ => 1,
     }
 }

@@ -13,6 +13,8 @@ const LONGEST_TURN: f64 = 1.5;
 /// The same of a strand that touches something: what it touches is another surface after a longer one.
 const TOUCHING_TURN: f64 = 0.3;
 
+/// What holds an edge against rolling about itself is never less than this share of the torque of its joint.
+const COUPLED: f64 = 0.1;
 /// What holds an edge against a rotation about itself is never less than this share of all that holds it.
 const LEAST_TWIST: f64 = 1e-6;
 
@@ -128,11 +130,12 @@ fn eliminate(motion: &Motion, rod: &Rod, edge: usize, beyond: &mut Beyond) -> El
     // Where twist is all but free, f32 would know nothing of what is left of it beside the inertia.
     let held = turn + spring;
     turn += LEAST_TWIST * (held.x_axis.x + held.y_axis.y + held.z_axis.z) * outer(along, along);
-    // A joint that is bent less than it wants holds its edges against rolling about themselves, which turns its bend out of the plane
-    // that it wants. Its spring knows nothing of that: without it, rounds move away from their end where joints want to be bent more
-    // than twice as much as they are, as those do that make up for sag. One of 131,072 strands left its rest so.
+    // The torque of a joint turns with its edges. One that is bent less than it wants holds them against rolling about themselves, which turns its bend out of
+    // the plane that it wants; and any couples their rolls with what moves them aside. Its spring knows nothing of that: without the first, rounds move away from
+    // their end where joints want to be bent more than twice as much as they are, as those do that make up for sag; without the second, one round a sub-step
+    // takes too little of what holds a strand that stands against gravity, and it leaves its rest within seconds.
     let before = if edge == 0 { along } else { parent * DVec3::Z };
-    let against_roll = 0.5 * own.dot(before.cross(along)).max(0.0);
+    let against_roll = (0.5 * own.dot(before.cross(along))).max(COUPLED * own.length());
     turn += against_roll * outer(along, along);
     let inverse = (turn + spring).inverse();
     let by_parent = inverse * spring;
