@@ -106,15 +106,19 @@ fn sections_move_as_each_of_them_alone() {
     assert!(both[0] == swapped[1] && both[1] == swapped[0]);
 }
 
-/// Rods that a group of threads goes along together, of lengths around the numbers of threads, some of them pinned at both ends, beside others that touch
-/// nothing: after some sub-steps they are where one thread a strand takes them, but for rounding. A contact multiplies that in taut strands.
+/// Rods that a group of threads goes along together, of lengths around the numbers of threads, some of them pinned at both ends, some by up to five vertices at their roots,
+/// beside others that touch nothing: after some sub-steps they are where one thread a strand takes them, but for rounding. A contact multiplies that in taut strands.
 #[test]
 fn threads_that_go_along_a_strand_together_take_it_where_one_does() {
     // Of up to 2,048 guides 32 threads take a strand, of more 8.
-    for (guides, vertices) in [(200, 2), (200, 9), (200, 33), (200, 35), (60, 100), (2100, 3), (2100, 10), (2100, 19)] {
+    for (guides, vertices) in [(200, 2), (200, 9), (200, 33), (200, 35), (60, 75), (2100, 3), (2100, 10), (2100, 19)] {
         let mut strands = random_strands(guides, vertices, 0, 11);
-        for strand in strands.rest.chunks_mut(vertices as usize).step_by(3) {
-            strand.last_mut().unwrap().w = 0.0;
+        for (index, strand) in strands.rest.chunks_mut(vertices as usize).enumerate() {
+            match index % 3 {
+                0 => strand.last_mut().unwrap().w = 0.0,
+                1 => strand.iter_mut().take(2 + index % 4).for_each(|vertex| vertex.w = 0.0),
+                _ => {}
+            }
         }
         let params = SimParams { internal_damping: 1e-3, pull_frequency: 0.5, ..SimParams::default() };
         let capsule = ball(Vec3::new(0.0, -0.15, 0.0), 0.12);
@@ -130,17 +134,24 @@ fn threads_that_go_along_a_strand_together_take_it_where_one_does() {
         let apart: Vec<_> = alone.iter().zip(&together).map(|(a, b)| a.truncate().distance(b.truncate())).collect();
         let largest = |strand: &[f32]| strand.iter().copied().fold(0.0, f32::max);
         let of_strands: Vec<_> = apart.chunks(vertices as usize).map(largest).collect();
-        let free = of_strands.iter().enumerate().filter(|(index, _)| index % 3 > 0).map(|(_, apart)| *apart);
-        let free = free.fold(0.0, f32::max);
         // The others are moved by the same kernel.
-        let mut differ: Vec<_> = of_strands.iter().copied().filter(|apart| *apart > 0.0).collect();
-        differ.sort_by(f32::total_cmp);
-        let median = differ[differ.len() / 2];
+        let differ = |pinned: bool| {
+            let some =
+                of_strands.iter().enumerate().filter(|(index, apart)| (index % 3 == 0) == pinned && **apart > 0.0);
+            let mut some: Vec<_> = some.map(|(_, apart)| *apart).collect();
+            some.sort_by(f32::total_cmp);
+            some
+        };
+        let (pinned, free) = (differ(true), differ(false));
+        // Pinned at both ends, strands of two vertices do not move.
+        let half = pinned.get(pinned.len() / 2).copied().unwrap_or(0.0);
+        let most = free[free.len() * 9 / 10];
         println!(
-            "{guides} strands of {vertices}: {near_alone} near, {} differ, by {median:.1e} m (median), free ones by {free:.1e} m",
-            differ.len()
+            "{guides} strands of {vertices}: {near_alone} near; {} free ones differ, 90 % by at most {most:.1e} m, {} pinned ones, half by at most {half:.1e} m",
+            free.len(),
+            pinned.len()
         );
-        assert!(near_alone > guides / 40 && near_alone.abs_diff(near_together) <= 1 + guides / 100);
-        assert!(median < 1e-6 && free < 1e-3, "{guides} strands of {vertices}: {median:e} {free:e}");
+        assert!(near_alone > guides / 60 && near_alone.abs_diff(near_together) <= 1 + guides / 100);
+        assert!(most < 1e-5 && half < 1e-4, "{guides} strands of {vertices}: {most:e} {half:e}");
     }
 }

@@ -82,7 +82,7 @@ fn near_obstacles(clear: ptr<function, Clear>, surface: f32, past: f32, strand: 
         nearest.nearest = select(nearest.nearest, i, distance < nearest.distance);
         nearest.distance = min(nearest.distance, distance);
     }
-    *clear = Clear(nearest.nearest, nearest.distance - length, nearest.others - length);
+    *clear = nearest;
     return within_reach(close, way, strand.root_now, u, v);
 }
 

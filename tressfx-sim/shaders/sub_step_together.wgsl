@@ -12,7 +12,7 @@ import package::sub_step::{
 };
 @if(internal_damping)
 import package::sub_step::store_strain;
-import package::substitute::{Round, Start, aim_edge_again, keep_aim};
+import package::substitute::{Round, Start, aim_edge_again};
 import package::substitute_together::substitute_together;
 import package::together::{Sums, any_wants, member, sum_up_to, total};
 import package::vector::is_finite;
@@ -36,7 +36,7 @@ fn listed_round_together(strand: Strand, start: Start, place: u32, lane: u32) ->
     return round;
 }
 
-/// `goes_on` says whether the strand is one of the list.
+/// `is_listed` says whether the strand is one of the list; others are not touched.
 fn rounds_together(strand: Strand, start: Start, so_far: Round, lane: u32, is_listed: bool) -> Round {
     var round = so_far;
     var goes_on = is_listed;
@@ -75,6 +75,8 @@ fn end_together(strand: Strand, start: Start, round: Round, lane: u32, is_listed
 
 fn finish_together(strand: Strand, start: Start, round: Round, lane: u32, is_sound: bool) {
     let is_new = note_touches_together(strand, start.surface, lane, is_sound);
+    // What one thread has noted of an edge another one reads with its strain.
+    storageBarrier();
     let calm = !is_too_fast(round) && !is_new;
     var aimed = round.aimed;
     if (any_wants(lane, is_sound && !calm)) {
@@ -113,7 +115,6 @@ fn aim_again_together(strand: Strand, kept: f32, lane: u32, is_due: bool) -> vec
         let moved = rods[moved_slot(strand, vertex, 0u)];
         let before = rods[moved_slot(strand, vertex - 1u, 0u)].xyz;
         storageBarrier();
-        workgroupBarrier();
         if (is_free) { aimed += aim_edge_again(strand, vertex, moved, before, held, kept); }
     }
     sum_up_to(lane, Sums(aimed, vec3(0.0)));

@@ -36,7 +36,8 @@ fn substitute_together(strand: Strand, start: Start, is_first_round: bool, most:
         workgroupBarrier();
         let so_far = longest[lane - member(lane)];
         let turned = turned(here, links[lane].turn);
-        let own = Sums(length * turned.by, length * along(turned.now));
+        let none = vec3(0.0);
+        let own = Sums(select(none, length * turned.by, is_free), select(none, length * along(turned.now), is_free));
         let way = sum_up_to(lane, own);
         let moving = round.moving + way.a;
         let place = round.place + way.b;
@@ -58,7 +59,6 @@ fn substitute_together(strand: Strand, start: Start, is_first_round: bool, most:
     round.finite = is_finite(round.place) && is_finite(round.moving);
     // The next sweep has other edges for each thread.
     storageBarrier();
-    workgroupBarrier();
     return round;
 }
 

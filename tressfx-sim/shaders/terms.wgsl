@@ -1,4 +1,4 @@
-// What an edge and the vertex before it bring into a round: their inertia, and the joint before the edge. Nothing of it depends on other edges.
+// What an edge and the vertex before it bring into a round: their inertia, and the joint before the edge. Nothing of it depends on what the sweep finds of other edges.
 
 import package::joint::{Spring, Stiffness, joint_between, lag_of, spring_of, torque_of};
 import package::rod::{LAST_STRAIN, Row, STRAIN, Strand, half_turn, rest, rods, slot};
@@ -12,7 +12,7 @@ import package::vector::direction_or;
 /// What holds an edge against rolling about itself is never less than this share of the torque of its joint.
 const COUPLED: f32 = 0.1;
 
-/// What it is.
+/// What an edge brings in.
 struct Terms {
     /// The direction of the edge, and that of its parent.
     axis: vec3<f32>,

@@ -51,7 +51,7 @@ fn bits_of_strand(lane: u32, own: u32) -> u32 {
     return bits;
 }
 
-/// Whether any thread of the group wants it.
+/// Whether any strand of the group wants it: all threads of a strand have to say the same.
 fn any_wants(lane: u32, wants: bool) -> bool {
     wanted[lane] = select(0u, 1u, wants);
     workgroupBarrier();

@@ -50,7 +50,8 @@ pub(crate) struct RodBuffers {
     /// Two `vec4<f32>` a vertex ([`GpuRods`](crate::rods::GpuRods)).
     pub(crate) rest: BufferId,
     /// Fourteen `vec4<f32>` a vertex: the state, and what the sweeps of a sub-step leave for each other. The guides of a group of
-    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 14 + slot) * GROUP + guide % GROUP`. Where hair meets hair, a `vec4<f32>` a
+    /// threads are beside each other: `((guide / GROUP * vertices + vertex) * 14 + slot) * GROUP + guide % GROUP`; where there are colliders two slots of each, so
+    /// that all kernels which read them need the same feature `colliders` (`ADJACENT` in `rod.wgsl`). Where hair meets hair, a `vec4<f32>` a
     /// vertex follows, vertex-major: the acceleration by the hair around it.
     pub(crate) state: BufferId,
 }
