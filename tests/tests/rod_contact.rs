@@ -128,6 +128,7 @@ fn fast_bars_do_not_go_through() {
                 println!("radius {radius} m, {speed} m/s, {vertices} vertices: {through} of {cases} go through");
                 let most = match (radius, speed) {
                     (0.01, 10.0) => 0,
+                    (0.0025..0.02, 10.0) if vertices > 16 => 0,
                     // It drags a strand by half of its length, which then whips around it.
                     (0.0025, 3.0) => 5,
                     _ => 1,

@@ -279,7 +279,7 @@ pub(crate) struct Shaders {
     /// Write the kernels of a renderer that writes depth and coverage of the hair too
     #[arg(long)]
     pub(crate) hair_output: bool,
-    /// Write the kernels for a device that is a CPU: some drivers end loops that run on, and their kernels end before; a thread goes along a strand alone
+    /// Write the kernels for a device that is a CPU: some drivers end loops that run on, and their kernels end before; a thread goes along a strand alone unless it is long
     #[arg(long)]
     pub(crate) for_cpu: bool,
     /// Write the kernels for the least that WebGPU promises, bindings of 128 MiB: lists of fragments have two buffers of nodes
